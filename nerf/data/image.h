@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace nerf {
+
+// How pixel values relate to light. Photographs are display-referred (sRGB transfer); EXR and HDR
+// files hold values proportional to radiance.
+enum class ColorEncoding { kSrgb, kLinear };
+
+// An image in memory: `height` rows of `width` pixels of `channels` floats, top row first.
+// Colour is in [0,1] for sRGB and unbounded for linear images. Channel 3, where present, is alpha
+// in [0,1]; colour is not premultiplied ("straight").
+struct Image {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  ColorEncoding encoding = ColorEncoding::kSrgb;
+  std::vector<float> pixels;
+
+  Image() = default;
+  Image(int width_, int height_, int channels_, ColorEncoding encoding_ = ColorEncoding::kSrgb)
+      : width(width_),
+        height(height_),
+        channels(channels_),
+        encoding(encoding_),
+        pixels(static_cast<std::size_t>(width_) * height_ * channels_, 0.0f) {}
+
+  float* At(int x, int y) { return pixels.data() + Offset(x, y); }
+  const float* At(int x, int y) const { return pixels.data() + Offset(x, y); }
+
+ private:
+  std::size_t Offset(int x, int y) const {
+    return (static_cast<std::size_t>(y) * width + x) * channels;
+  }
+};
+
+}  // namespace nerf

@@ -1,0 +1,48 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "nerf/commands/commands.h"
+#include "sfm/input_error.h"
+
+namespace {
+
+constexpr int kExitBadInput = 2;
+constexpr int kExitInternal = 1;
+
+// Results go to standard output, what happens on the way to standard error.
+void SetUpLogging() {
+  auto logger = spdlog::stderr_color_st("nerf");
+  logger->set_pattern("%^%l%$: %v");
+  spdlog::set_default_logger(logger);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  SetUpLogging();
+  CLI::App app{"nerf: radiance fields from photographs, on an ordinary CPU"};
+  app.set_version_flag("--version", NERF_VERSION);
+  app.require_subcommand(1);
+  app.footer("nerf COMMAND --help shows each command with examples.");
+  try {
+    nerf::AddTrainCommand(app);
+    nerf::AddRenderCommand(app);
+    nerf::AddEvalCommand(app);
+    nerf::AddPosesCommand(app);
+    nerf::AddSampleCommand(app);
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : kExitBadInput;
+  } catch (const sfm::InputError& e) {
+    spdlog::error("{}", e.what());
+    return kExitBadInput;
+  } catch (const std::exception& e) {
+    spdlog::critical("{}", e.what());
+    return kExitInternal;
+  }
+}

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <spdlog/fmt/fmt.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace sfm {
+
+// Something that a person gave us is wrong: a file, a key, a flag. The message is one line that
+// names the file, the key and the mend. `main` prints it and exits with status 2.
+class InputError : public std::runtime_error {
+ public:
+  explicit InputError(const std::string& message) : std::runtime_error(message) {}
+
+  template <class... Args>
+  explicit InputError(fmt::format_string<Args...> format, Args&&... args)
+      : std::runtime_error(fmt::format(format, std::forward<Args>(args)...)) {}
+};
+
+}  // namespace sfm
