@@ -3,12 +3,13 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "sfm/camera_intrinsics.h"
 #include "sfm/posed_images.h"
 
 namespace nerf {
 
-// Pixel <-> direction for every camera model of COLMAP 3.8, in camera axes (OpenCV: x right, y down,
-// z forward). Pixel centres lie at +0.5. Formulae: COLMAP src/base/camera_models.h.
+// Pixel <-> direction for every camera model of COLMAP 3.8, in camera axes (OpenCV: x right, y
+// down, z forward). Pixel centres lie at +0.5. Formulae: COLMAP src/base/camera_models.h.
 
 // Unit direction through a pixel. Inverts the lens distortion by Newton's method in double.
 //   returns  nullopt where the inverse does not converge or the pixel lies beyond the lens' reach
@@ -27,7 +28,7 @@ sfm::Camera Downscaled(const sfm::Camera& camera, int factor);
 
 // Mean focal length in pixels, and the principal point.
 double FocalLength(const sfm::Camera& camera);
-Eigen::Vector2d PrincipalPoint(const sfm::Camera& camera);
+using sfm::PrincipalPoint;
 
 // A distortion-free camera.
 //   vertical_fov  full angle in radians

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 
 #include "nerf/data/image.h"
+#include "nerf/data/image_convert.h"  // Downscale
+#include "nerf/data/srgb.h"
 
 namespace nerf {
 
@@ -12,7 +13,8 @@ namespace nerf {
 // and scaled to [0,1]; EXR, HDR and other float formats are linear radiance.
 //   upright_by_exif  turn the pixels as the EXIF orientation says
 //   returns          3 or 4 channels
-// Throws sfm::InputError naming the file when it is missing, cut short, or holds a non-finite value.
+// Throws sfm::InputError naming the file when it is missing, cut short, or holds a non-finite
+// value.
 Image ReadImage(const std::filesystem::path& path, bool upright_by_exif);
 
 // Width and height as stored, and the EXIF orientation (1..8), without reading the pixels.
@@ -28,15 +30,5 @@ ImageHeader ReadImageHeader(const std::filesystem::path& path);
 // first; alpha is premultiplied, as the format asks). 1, 3 or 4 channels. The file appears whole or
 // not at all. Throws sfm::InputError naming the file (folder missing, disk full, unknown ending).
 void WriteImage(const std::filesystem::path& path, const Image& image);
-
-// Area average over blocks of factor x factor whole pixels, in linear light, alpha-weighted; edge
-// rows and columns that do not fill a block are dropped. Same encoding as the input.
-// Throws sfm::InputError when the image is smaller than one block.
-Image Downscale(const Image& image, int factor);
-
-// The sRGB transfer function and its inverse (IEC 61966-2-1), on [0,1]; linear with slope 12.92 near 0 and,
-// as an odd function, below it; the power law goes on above 1.
-float SrgbFromLinear(float linear);
-float LinearFromSrgb(float srgb);
 
 }  // namespace nerf

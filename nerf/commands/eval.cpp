@@ -1,0 +1,174 @@
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "nerf/commands/commands.h"
+#include "nerf/commands/threads.h"
+#include "nerf/data/camera.h"
+#include "nerf/data/dataset.h"
+#include "nerf/data/image_io.h"
+#include "nerf/data/image_metrics.h"
+#include "nerf/output/contact_sheet.h"
+#include "nerf/render/image_renderer.h"
+#include "nerf/train/engine.h"
+#include "nerf/train/run_folder.h"
+#include "sfm/atomic_file.h"
+#include "sfm/input_error.h"
+#include "sfm/progress.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvalArguments {
+  std::string run;
+  std::string output;
+  std::string split = "test";
+  int threads = 0;
+  bool json = false;
+};
+
+struct Score {
+  std::string name;
+  double psnr = 0, ssim = 0, seconds = 0;
+};
+
+sfm::Split SplitFromName(const std::string& name) {
+  if (name == "train") return sfm::Split::kTrain;
+  return name == "validation" ? sfm::Split::kValidation : sfm::Split::kTest;
+}
+
+// JSON has no infinity; equal images are said in words.
+nlohmann::json JsonNumber(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json("inf");
+}
+
+Score MeanOf(const std::vector<Score>& scores) {
+  Score mean{"mean", 0, 0, 0};
+  for (const Score& s : scores) {
+    mean.psnr += s.psnr;
+    mean.ssim += s.ssim;
+    mean.seconds += s.seconds;
+  }
+  const auto count = static_cast<double>(scores.size());
+  return {mean.name, mean.psnr / count, mean.ssim / count, mean.seconds / count};
+}
+
+nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& arguments,
+                              const std::vector<Score>& scores) {
+  const Score mean = MeanOf(scores);
+  nlohmann::json images = nlohmann::json::array();
+  for (const Score& s : scores) {
+    images.push_back({{"name", s.name},
+                      {"psnr", JsonNumber(s.psnr)},
+                      {"ssim", s.ssim},
+                      {"seconds", s.seconds}});
+  }
+  return {{"split", arguments.split},
+          {"downscale", run.model.config.data.downscale},
+          {"step", run.step},
+          {"training_seconds", run.training_seconds},
+          {"psnr", JsonNumber(mean.psnr)},
+          {"ssim", mean.ssim},
+          {"seconds_per_frame", mean.seconds},
+          {"images", images}};
+}
+
+void PrintTable(const std::vector<Score>& scores) {
+  std::size_t width = 5;
+  for (const Score& s : scores) width = std::max(width, s.name.size());
+  fmt::print("{:<{}}  {:>8}  {:>7}  {:>9}\n", "image", width, "PSNR dB", "SSIM", "seconds");
+  const auto row = [width](const Score& s) {
+    fmt::print("{:<{}}  {:>8.2f}  {:>7.4f}  {:>9.2f}\n", s.name, width, s.psnr, s.ssim, s.seconds);
+  };
+  for (const Score& s : scores) row(s);
+  row(MeanOf(scores));
+}
+
+void RunEval(const EvalArguments& arguments) {
+  UseThreads(arguments.threads);
+  const OpenedRun run = OpenRun(arguments.run);
+  const fs::path output =
+      arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
+  sfm::MakeOutputFolder(output);
+
+  std::vector<const sfm::PosedImage*> images;
+  for (const auto& image : run.posed.images) {
+    if (image.split == SplitFromName(arguments.split)) images.push_back(&image);
+  }
+  if (images.empty()) {
+    throw sfm::InputError("{}: the run has no {} images; choose another --split", arguments.run,
+                          arguments.split);
+  }
+
+  const SceneFacts& scene = run.model.scene;
+  const int downscale = run.model.config.data.downscale;
+  sfm::ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
+  std::vector<Score> scores;
+  std::vector<ContactSheetRow> rows;
+  for (const sfm::PosedImage* image : images) {
+    Image truth;
+    try {
+      truth = OnWhite(LoadPhotograph(run.posed, *image, downscale));
+    } catch (const sfm::InputError& error) {
+      spdlog::warn("{}; left out", error.what());
+      continue;
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const RenderedView view = RenderView(
+        *run.model.engine, Downscaled(run.posed.cameras[image->camera], downscale),
+        scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
+        DisplayBackground(scene.has_alpha), scene.encoding);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    const double psnr = Psnr(truth, view.rgb);
+    scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds.count()});
+    rows.push_back({fmt::format("{}  {:.2f} dB", image->name, psnr), truth, view.rgb});
+    progress.Update(static_cast<std::int64_t>(scores.size()), fmt::format("{:.2f} dB", psnr));
+  }
+  progress.Finish();
+  if (scores.empty()) {
+    throw sfm::InputError("{}: none of the {} images could be read", arguments.run, arguments.split);
+  }
+
+  const nlohmann::json result = JsonFromScores(run, arguments, scores);
+  sfm::WriteFileAtomically(output / "eval.json", result.dump(2) + "\n");
+  WriteImage(output / "contact_sheet.png", ContactSheet(rows));
+  if (arguments.json) {
+    fmt::print("{}\n", result.dump(2));
+  } else {
+    PrintTable(scores);
+    fmt::print("{}\n", (output / "contact_sheet.png").string());
+  }
+}
+
+}  // namespace
+
+void AddEvalCommand(CLI::App& app) {
+  auto* command = app.add_subcommand("eval", "PSNR and SSIM of a run on photographs it never saw");
+  const auto arguments = std::make_shared<EvalArguments>();
+  command->add_option("run", arguments->run, "run folder")->required();
+  command->add_option("-o,--output", arguments->output,
+                      "where eval.json and contact_sheet.png go [RUN/eval]");
+  command->add_option("--split", arguments->split, "which images: test, validation, train")
+      ->check(CLI::IsMember({"test", "validation", "train"}))
+      ->capture_default_str();
+  command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
+  command->add_flag("--json", arguments->json, "print JSON instead of the table");
+  command->footer(
+      "PSNR and SSIM compare pictures as they would be saved (8-bit sRGB).\n"
+      "Examples:\n"
+      "  nerf eval runs/fox\n"
+      "  nerf eval runs/fox --split train --json");
+  command->callback([arguments] { RunEval(*arguments); });
+}
+
+}  // namespace nerf

@@ -1,0 +1,100 @@
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "nerf/commands/commands.h"
+#include "sfm/colmap_runner.h"
+#include "sfm/input_error.h"
+#include "sfm/progress.h"
+#include "sfm/transforms_json.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PosesArguments {
+  std::string folder;
+  std::string output;
+  sfm::ColmapOptions colmap;
+};
+
+void PrintReport(const sfm::ColmapReport& report, const fs::path& transforms) {
+  const auto row = [](const std::string& what, const std::string& value) {
+    fmt::print("{:<26}{}\n", what, value);
+  };
+  row("photographs", fmt::format("{}", report.photos));
+  row("registered", fmt::format("{}", report.registered));
+  for (const std::string& name : report.unregistered) row("  not registered", name);
+  row("skipped", fmt::format("{}", report.skipped.size()));
+  for (const sfm::SkippedPhoto& photo : report.skipped) {
+    row("  skipped", fmt::format("{} ({})", photo.name, photo.reason));
+  }
+  row("points", fmt::format("{}", report.points));
+  row("mean reprojection error", fmt::format("{:.2f} pixels", report.mean_reprojection_error));
+  double total = 0;
+  for (const auto& [step, seconds] : report.seconds) {
+    row("seconds, " + step, fmt::format("{:.1f}", seconds));
+    total += seconds;
+  }
+  row("seconds, in all", fmt::format("{:.1f}", total));
+  row("poses", transforms.string());
+}
+
+void RunPoses(const PosesArguments& arguments) {
+  fs::path folder = fs::absolute(arguments.folder).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();  // a slash at the end
+  const fs::path output = arguments.output.empty()
+                              ? fs::path("runs") / (folder.filename().string() + "-poses")
+                              : fs::path(arguments.output);
+  const fs::path transforms = output / "transforms.json";
+  const fs::path workspace = output / "colmap";
+  if (fs::exists(transforms) && !fs::exists(workspace / "steps.json")) {
+    throw sfm::InputError("{}: is there already, and not from nerf poses; give another -o",
+                          transforms.string());
+  }
+  sfm::ColmapReport report;
+  const sfm::PosedImages posed =
+      sfm::PosesFromPhotos(arguments.folder, workspace, arguments.colmap, &report);
+  sfm::WriteTransformsJson(posed, transforms);
+  PrintReport(report, transforms);
+}
+
+}  // namespace
+
+void AddPosesCommand(CLI::App& app) {
+  auto* command = app.add_subcommand("poses", "Camera poses of a folder of photographs, by COLMAP");
+  const auto arguments = std::make_shared<PosesArguments>();
+  sfm::ColmapOptions& colmap = arguments->colmap;
+  command->add_option("folder", arguments->folder, "folder of photographs")->required();
+  command->add_option("-o,--output", arguments->output,
+                      "where transforms.json and colmap/ go [runs/FOLDER-poses]");
+  command
+      ->add_option("--matcher", colmap.matcher,
+                   "which pairs are compared: auto, exhaustive (all), sequential (neighbours)")
+      ->capture_default_str();
+  command->add_option("--camera-model", colmap.camera_model, "COLMAP's name of the lens model")
+      ->capture_default_str();
+  command
+      ->add_option("--max-image-size", colmap.max_image_size,
+                   "longer side, in pixels, at which features are found")
+      ->capture_default_str();
+  command
+      ->add_option("--max-features", colmap.max_num_features,
+                   "features a photo; matching takes time with its square")
+      ->capture_default_str();
+  command->add_option("--threads", colmap.threads, "0: all cores")->capture_default_str();
+  command->footer(
+      "Run it again to go on after an interruption; finished steps are skipped.\n"
+      "Examples:\n"
+      "  nerf poses photos/fox\n"
+      "  nerf poses photos/fox -o fox-poses --max-image-size 3200\n"
+      "  nerf poses frames --matcher sequential --camera-model OPENCV_FISHEYE");
+  command->callback([arguments] { RunPoses(*arguments); });
+}
+
+}  // namespace nerf

@@ -1,0 +1,57 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "nerf/commands/commands.h"
+#include "nerf/sample/sample_folder.h"
+
+namespace nerf {
+namespace {
+
+struct SampleArguments {
+  std::string folder;
+  sample::SampleOptions options;
+};
+
+void RunSample(const SampleArguments& arguments) {
+  const std::filesystem::path folder = arguments.folder;
+  sample::WriteSample(folder, arguments.options);
+  fmt::print(
+      "{} photographs are in {}; true poses, depth, normals and albedo, for tests only, in {}\n"
+      "next: nerf train {}\n",
+      arguments.options.views, (folder / "images").string(), (folder / "truth").string(),
+      folder.string());
+}
+
+}  // namespace
+
+void AddSampleCommand(CLI::App& app) {
+  auto arguments = std::make_shared<SampleArguments>();
+  sample::SampleOptions& options = arguments->options;
+  CLI::App* command =
+      app.add_subcommand("sample", "Photographs of a small built-in scene, to train on");
+  command
+      ->add_option("folder", arguments->folder, "where the photographs go: new, empty, or a sample")
+      ->required();
+  command->add_option("--views", options.views, "how many photographs")->capture_default_str();
+  command->add_option("--width", options.width, "of a photograph, in pixels")
+      ->capture_default_str();
+  command->add_option("--height", options.height, "of a photograph, in pixels")
+      ->capture_default_str();
+  command->add_option("--samples", options.samples_per_pixel, "rays averaged in each pixel")
+      ->capture_default_str();
+  command->add_option("--seed", options.seed, "another number moves the cameras a little")
+      ->capture_default_str();
+  command->add_option("--threads", options.threads, "0: all cores")->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  nerf sample demo                          36 photographs in demo/images\n"
+      "  nerf sample demo --views 60 --width 800 --height 600\n"
+      "  nerf train demo                           then train on them");
+  command->callback([arguments] { RunSample(*arguments); });
+}
+
+}  // namespace nerf

@@ -1,0 +1,199 @@
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nerf/commands/commands.h"
+#include "nerf/commands/interrupt.h"
+#include "nerf/commands/threads.h"
+#include "nerf/config.h"
+#include "nerf/data/dataset.h"
+#include "nerf/train/checkpoint.h"
+#include "nerf/train/run_folder.h"
+#include "nerf/train/trainer.h"
+#include "sfm/atomic_file.h"
+#include "sfm/colmap_runner.h"
+#include "sfm/input_error.h"
+#include "sfm/pose_input.h"
+#include "sfm/progress.h"
+#include "sfm/scene_normalization.h"
+#include "sfm/transforms_json.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TrainArguments {
+  std::string input;
+  std::string output;
+  std::string preset = "balanced";
+  std::vector<std::string> assignments;
+  std::optional<int> downscale;
+  int threads = 0;
+  bool resume = false;
+};
+
+fs::path RunFolder(const TrainArguments& arguments) {
+  if (!arguments.output.empty()) return arguments.output;
+  if (arguments.input.empty()) {
+    throw sfm::InputError("nerf train: name an INPUT, or with --resume the run with -o RUN");
+  }
+  fs::path name = fs::absolute(arguments.input).lexically_normal();
+  if (!name.has_filename()) name = name.parent_path();  // a slash at the end
+  return fs::path("runs") / name.stem();
+}
+
+// "a, b, c and 14 more"
+std::string SomeOf(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
+  return text;
+}
+
+// Poses of the input: read where it brings them, found by COLMAP where it is a folder of photos.
+sfm::PosedImages FindPoses(const fs::path& input, const fs::path& run, int threads) {
+  const sfm::InputLocation location = sfm::FindInput(input);
+  if (location.kind != sfm::InputKind::kPhotos) return sfm::ReadPosedInput(location);
+  sfm::ColmapOptions colmap;
+  colmap.threads = threads;
+  sfm::ColmapReport report;
+  sfm::PosedImages posed = sfm::PosesFromPhotos(location.images, ColmapPath(run), colmap, &report);
+  double seconds = 0;
+  for (const auto& [step, step_seconds] : report.seconds) seconds += step_seconds;
+  fmt::print("poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
+             report.registered, report.photos, report.points, report.mean_reprojection_error,
+             sfm::FormatDuration(seconds));
+  return posed;
+}
+
+void PrintData(const sfm::PosedImages& posed, const Dataset& data, int threads) {
+  std::size_t held_out = 0;
+  for (const auto& image : posed.images) held_out += image.split == sfm::Split::kTest;
+  std::size_t bytes = 0;
+  for (const auto* views : {&data.train, &data.validation}) {
+    for (const View& view : *views) bytes += view.rgba.size() * sizeof(Eigen::half);
+  }
+  const sfm::Camera& camera = data.train.front().camera;
+  fmt::print("{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels, {} MB held\n",
+             threads, data.train.size(), data.validation.size(), held_out, camera.width,
+             camera.height, bytes >> 20);
+  std::fflush(stdout);
+}
+
+void WarnOfMissing(const sfm::PosedImages& posed) {
+  if (posed.missing.empty()) return;
+  spdlog::warn("{}: {} of {} images are missing and left out: {}", posed.source.string(),
+               posed.missing.size(), posed.missing.size() + posed.images.size(),
+               SomeOf(posed.missing));
+}
+
+Dataset Load(const sfm::PosedImages& posed, const DataOptions& options,
+             const sfm::SceneNormalization& normalized_from_world) {
+  Dataset data = LoadDataset(posed, options, normalized_from_world);
+  if (!data.skipped.empty()) {
+    for (const std::string& reason : data.skipped) spdlog::warn("{}", reason);
+    spdlog::warn("{} images could not be read and are left out", data.skipped.size());
+  }
+  return data;
+}
+
+void Report(const TrainSummary& summary, const fs::path& run) {
+  const std::string psnr =
+      summary.validation_psnr > 0 ? fmt::format(", validation {:.2f} dB", summary.validation_psnr) : "";
+  if (summary.finished) {
+    fmt::print("trained {} steps in {:.1f} s{}\n{}\nnext: nerf eval {}\n", summary.step,
+               summary.training_seconds, psnr, run.string(), run.string());
+  } else {
+    fmt::print("stopped at step {}, saved{}\ngo on with: nerf train --resume -o {}\n", summary.step,
+               psnr, run.string());
+  }
+}
+
+void StartRun(const TrainArguments& arguments, const fs::path& run, int threads) {
+  if (arguments.input.empty()) throw sfm::InputError("nerf train: name an INPUT");
+  std::vector<std::string> assignments = arguments.assignments;
+  if (arguments.downscale) {
+    assignments.push_back(fmt::format("data.downscale={}", *arguments.downscale));
+  }
+  const Config config = LoadConfig(arguments.preset, assignments);
+  if (fs::exists(CheckpointPath(run))) {
+    throw sfm::InputError(
+        "{}: holds a run already; add --resume to go on with it, or choose another folder with -o",
+        run.string());
+  }
+  sfm::FindInput(arguments.input);  // a wrong input must not leave an empty run behind
+  sfm::MakeOutputFolder(run);
+
+  sfm::PosedImages found = FindPoses(arguments.input, run, threads);
+  WarnOfMissing(found);
+  AssignSplits(found, config.data);
+  SceneFacts scene;
+  scene.normalized_from_world = sfm::NormalizeScene(found);
+  sfm::WriteTransformsJson(found, PosesPath(run));
+  sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
+  // Read back, so that a run which resumes starts from the same numbers to the last bit.
+  const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
+
+  const Dataset data = Load(posed, config.data, scene.normalized_from_world);
+  scene.encoding = data.encoding;
+  scene.has_alpha = data.has_alpha;
+  PrintData(posed, data, threads);
+  Trainer trainer(config, scene, data, run);
+  Report(trainer.Run(StopOnInterrupt()), run);
+}
+
+void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads) {
+  if (!arguments.assignments.empty() || arguments.downscale) {
+    throw sfm::InputError(
+        "--resume goes on with the run's own configuration; leave --set and --downscale away");
+  }
+  const Checkpoint checkpoint = ReadRunCheckpoint(run);
+  const Model model = ModelFromCheckpoint(checkpoint);
+  const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
+  WarnOfMissing(posed);
+  const Dataset data = Load(posed, model.config.data, model.scene.normalized_from_world);
+  PrintData(posed, data, threads);
+  Trainer trainer(checkpoint, data, run);
+  Report(trainer.Run(StopOnInterrupt()), run);
+}
+
+}  // namespace
+
+void AddTrainCommand(CLI::App& app) {
+  auto* command = app.add_subcommand("train", "Trains a radiance field from photographs");
+  const auto arguments = std::make_shared<TrainArguments>();
+  command->add_option("input", arguments->input,
+                      "folder of photos, COLMAP project, transforms.json, or LLFF folder");
+  command->add_option("-o,--output", arguments->output, "run folder [runs/INPUT]");
+  command->add_option("--config", arguments->preset, "preset (fast, balanced, accurate) or JSON file")
+      ->capture_default_str();
+  command->add_option("--set", arguments->assignments, "change one key: block.key=value")
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
+  command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
+  command->add_flag("--resume", arguments->resume, "go on with the run in -o");
+  command->footer(
+      "Ctrl-C saves and leaves; --resume goes on where the run stopped, bit for bit.\n"
+      "Examples:\n"
+      "  nerf train photos/fox -o runs/fox --downscale 4\n"
+      "  nerf train photos/fox/transforms.json --config fast --set train.steps=2000\n"
+      "  nerf train --resume -o runs/fox");
+  command->callback([arguments] {
+    const int threads = UseThreads(arguments->threads);
+    const fs::path run = RunFolder(*arguments);
+    arguments->resume ? ResumeRun(*arguments, run, threads) : StartRun(*arguments, run, threads);
+  });
+}
+
+}  // namespace nerf

@@ -1,0 +1,189 @@
+#include "nerf/config.h"
+
+#include <algorithm>
+#include <set>
+
+#include "sfm/atomic_file.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+
+using nlohmann::json;
+
+// Each options struct's keys, once, for reading and writing.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataOptions, downscale, test_every, validation_images)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldOptions, hidden_width, geometry_features, color_layers)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OccupancyOptions, resolution, decay, threshold, warmup_steps,
+                                   update_every)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MarchOptions, near_distance, far_distance, steps_per_unit,
+                                   stop_transmittance)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LossOptions, kind, huber_delta)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GradientScalingOptions, full_distance)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OptimizerOptions, learning_rate, beta1, beta2, epsilon,
+                                   weight_decay)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScheduleOptions, warmup_steps, final_factor)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, steps, samples_per_batch, max_rays_per_batch, seed,
+                                   checkpoint_every, validate_every)
+namespace kernels {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HashGridOptions, levels, features, log2_table_size,
+                                   base_resolution, max_resolution)
+}  // namespace kernels
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Config, data, encoding, field, occupancy, march, loss,
+                                   gradient_scaling, optimizer, schedule, train)
+
+namespace {
+
+constexpr char kParentKey[] = "parent";
+
+// A whole number may stand where a real one is meant, never the other way round.
+bool SameKind(const json& base, const json& value) {
+  if (base.is_number_float()) return value.is_number();
+  if (base.is_number_integer()) {
+    return value.is_number_integer() && !(base.is_number_unsigned() && value < 0);
+  }
+  return base.type() == value.type();
+}
+
+const char* KindName(const json& base) {
+  if (base.is_number_float()) return "a number";
+  if (base.is_number_integer()) return "a whole number";
+  return base.type_name();
+}
+
+std::string JoinKeys(const json& object) {
+  std::string keys;
+  for (const auto& [key, value] : object.items()) keys += (keys.empty() ? "" : ", ") + key;
+  return keys;
+}
+
+// Writes `change` over `base`; each key must stand in `base` with the same kind of value.
+void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix) {
+  if (!change.is_object()) {
+    throw sfm::InputError("{}: {} must be an object {{...}}", where,
+                          prefix.empty() ? "the configuration" : prefix);
+  }
+  for (const auto& [key, value] : change.items()) {
+    const std::string full = prefix.empty() ? key : prefix + "." + key;
+    if (!base.contains(key)) {
+      throw sfm::InputError("{}: unknown key {}; known here are {}", where, full, JoinKeys(base));
+    }
+    json& old = base[key];
+    if (old.is_object()) {
+      Overlay(old, value, where, full);
+    } else if (!SameKind(old, value)) {
+      throw sfm::InputError("{}: {} must be {}, not {}", where, full, KindName(old), value.dump());
+    } else {
+      old = value;
+    }
+  }
+}
+
+json ParseJson(const std::string& text, const std::string& where) {
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    throw sfm::InputError("{}: is not valid JSON at byte {}; mend it there", where, error.byte);
+  }
+}
+
+// Writes a preset or file, after the chain of its parents, over `config`.
+void ApplyPreset(json& config, const std::string& preset, std::set<std::string> seen) {
+  if (!seen.insert(preset).second) {
+    throw sfm::InputError("config {}: is its own parent; break the circle", preset);
+  }
+  const auto& built_in = BuiltInPresets();
+  const auto found = built_in.find(preset);
+  if (found == built_in.end() && !std::filesystem::exists(preset)) {
+    std::string names;
+    for (const auto& [name, text] : built_in) names += (names.empty() ? "" : ", ") + name;
+    throw sfm::InputError("config {}: is neither a file nor a preset; presets are {}", preset, names);
+  }
+  const std::string where = "config " + preset;
+  json change =
+      ParseJson(found != built_in.end() ? found->second : sfm::ReadWholeFile(preset), where);
+  if (change.is_object() && change.contains(kParentKey)) {
+    if (!change[kParentKey].is_string()) throw sfm::InputError("{}: parent must be a name", where);
+    ApplyPreset(config, change[kParentKey], seen);
+    change.erase(kParentKey);
+  }
+  Overlay(config, change, where, "");
+}
+
+// "a.b=value" as {"a": {"b": value}}.
+json ParseAssignment(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw sfm::InputError("--set {}: want block.key=value, for example train.steps=2000", assignment);
+  }
+  const std::string text = assignment.substr(equals + 1);
+  json value = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (value.is_discarded()) value = text;  // a bare word is a string
+  std::string path = assignment.substr(0, equals);
+  for (std::size_t dot; (dot = path.rfind('.')) != std::string::npos; path.resize(dot)) {
+    value = json{{path.substr(dot + 1), value}};
+  }
+  return json{{path, value}};
+}
+
+void CheckEncoding(const kernels::HashGridOptions& o) {
+  if (o.levels < 1 || o.levels > 32) {
+    throw sfm::InputError("config: encoding.levels is {}; use 1 to 32", o.levels);
+  }
+  if (o.features != 1 && o.features != 2 && o.features != 4 && o.features != 8) {
+    throw sfm::InputError("config: encoding.features is {}; use 1, 2, 4 or 8", o.features);
+  }
+  if (o.log2_table_size < 8 || o.log2_table_size > 24) {
+    throw sfm::InputError("config: encoding.log2_table_size is {}; use 8 to 24", o.log2_table_size);
+  }
+  if (o.base_resolution < 1 || o.max_resolution < o.base_resolution || o.max_resolution > 65536) {
+    throw sfm::InputError(
+        "config: encoding.base_resolution {} and max_resolution {} must satisfy "
+        "1 <= base <= max <= 65536",
+        o.base_resolution, o.max_resolution);
+  }
+}
+
+Config Checked(const json& document, const std::string& where) {
+  Config config;
+  try {
+    config = document.get<Config>();
+  } catch (const json::exception& error) {
+    throw sfm::InputError("{}: {}", where, error.what());
+  }
+  // A whole number that its option cannot hold comes back as another one.
+  if (const json::array_t changes = json::diff(document, json(config)); !changes.empty()) {
+    throw sfm::InputError("{}: {} is out of range", where, changes[0]["path"].get<std::string>());
+  }
+  CheckEncoding(config.encoding);
+  config.data.Check();
+  config.field.Check();
+  config.occupancy.Check();
+  config.march.Check();
+  config.loss.Check();
+  config.gradient_scaling.Check();
+  config.optimizer.Check();
+  config.schedule.Check();
+  config.train.Check();
+  return config;
+}
+
+}  // namespace
+
+json JsonFromConfig(const Config& config) { return config; }
+
+Config ConfigFromJson(const json& document, const std::string& where) {
+  json complete = Config();
+  Overlay(complete, document, where, "");
+  return Checked(complete, where);
+}
+
+Config LoadConfig(const std::string& preset, const std::vector<std::string>& assignments) {
+  json document = Config();
+  ApplyPreset(document, preset, {});
+  for (const std::string& assignment : assignments) {
+    Overlay(document, ParseAssignment(assignment), "--set " + assignment, "");
+  }
+  return Checked(document, "config " + preset);
+}
+
+}  // namespace nerf

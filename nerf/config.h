@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "nerf/data/dataset.h"
+#include "nerf/field/field_options.h"
+#include "nerf/kernels/hash_encoding.h"
+#include "nerf/sampling/occupancy_grid.h"
+#include "nerf/sampling/ray_marcher.h"
+#include "nerf/train/train_options.h"
+
+namespace nerf {
+
+// The options of every module. configs/base.json holds each key with its default; the blocks there
+// have the names of the members here.
+struct Config {
+  DataOptions data;
+  kernels::HashGridOptions encoding;
+  FieldOptions field;
+  OccupancyOptions occupancy;
+  MarchOptions march;
+  LossOptions loss;
+  GradientScalingOptions gradient_scaling;
+  OptimizerOptions optimizer;
+  ScheduleOptions schedule;
+  TrainOptions train;
+};
+
+// The texts of configs/*.json by preset name, compiled in.
+const std::map<std::string, std::string>& BuiltInPresets();
+
+// The configuration of a preset or file, changed by assignments.
+//   preset       a built-in preset's name, or the path of a JSON file (which may name a "parent")
+//   assignments  "block.key=value", value as JSON; applied in order
+// Throws sfm::InputError naming the file and the key for an unknown key, a wrong type, or a value
+// out of range.
+Config LoadConfig(const std::string& preset, const std::vector<std::string>& assignments);
+
+// A configuration as JSON and back; reading is as strict as LoadConfig.
+//   where  names the file in errors
+nlohmann::json JsonFromConfig(const Config& config);
+Config ConfigFromJson(const nlohmann::json& json, const std::string& where);
+
+}  // namespace nerf

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "nerf/data/image.h"
+#include "sfm/posed_images.h"
+#include "sfm/scene_normalization.h"
+
+namespace nerf {
+
+struct DataOptions {
+  int downscale = 1;           // area-average photographs by this factor
+  int test_every = 8;          // hold out images 0, 8, 16, ... by name; 0 holds out none
+  int validation_images = 1;   // taken out of the training images to watch the progress; 0: none
+
+  void Check() const;
+};
+
+// Marks each image as train, validation or test, in place. Splits that the source brings are kept
+// (measuring.md: "unless the data set brings its own test file"); otherwise images are counted in
+// order of name. Scenes of fewer than 8 images hold out none, of fewer than 16 have no validation.
+void AssignSplits(sfm::PosedImages& posed, const DataOptions& options);
+
+// The photographs of one kind in memory, downscaled; RGBA as 16-bit floats: what training reads.
+struct View {
+  std::string name;
+  sfm::Camera camera;                        // of the downscaled image
+  Eigen::Isometry3d normalized_from_camera;  // OpenCV axes
+  std::vector<Eigen::half> rgba;             // [height, width, 4], straight alpha
+};
+
+struct Dataset {
+  std::vector<View> train;
+  std::vector<View> validation;
+  ColorEncoding encoding = ColorEncoding::kSrgb;
+  bool has_alpha = false;  // some pixel is not opaque
+  std::vector<std::string> skipped;  // photographs that could not be read, with the reason
+};
+
+// Reads the training and validation photographs on all threads. A photograph that cannot be read is
+// named in `skipped` and left out. Throws sfm::InputError when none is left to train on, when sRGB
+// and linear images are mixed, or when an image is not of its camera's size.
+Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
+                    const sfm::SceneNormalization& normalized_from_world);
+
+// One photograph as evaluation and training see it: upright, downscaled, 3 or 4 channels.
+Image LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image, int downscale);
+
+// What is seen through transparent pixels wherever a picture is made: white where photographs have
+// alpha (the NeRF-synthetic protocol), black elsewhere.
+Eigen::Vector3f DisplayBackground(bool has_alpha);
+
+}  // namespace nerf

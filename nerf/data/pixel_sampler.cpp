@@ -1,0 +1,106 @@
+#include "nerf/data/pixel_sampler.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "nerf/data/camera.h"
+#include "nerf/parallel.h"
+#include "nerf/sampling/random.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+namespace {
+
+constexpr std::uint64_t kPixelStream = 0x706978656c5f5f5full;
+constexpr std::uint64_t kBackgroundStream = 0x6261636b67726e64ull;
+constexpr std::uint64_t kJitterStream = 0x6a69747465725f5full;
+
+// Streams of different steps must not meet.
+std::uint64_t StreamOfStep(std::uint64_t stream, std::uint64_t step) { return Mix64(stream + step); }
+
+// Writes ray r of the batch; false where the lens does not reach the pixel.
+bool SetRay(RayBatch& rays, std::int64_t r, const sfm::Camera& camera,
+            const Eigen::Isometry3d& normalized_from_camera, const Eigen::Vector2d& pixel) {
+  const auto direction = DirectionFromPixel(camera, pixel);
+  if (!direction) return false;
+  const Eigen::Vector3d d = normalized_from_camera.linear() * *direction;
+  const Eigen::Vector3d& o = normalized_from_camera.translation();
+  Eigen::Map<Eigen::Vector3f>(&rays.direction[3 * r]) = d.cast<float>();
+  Eigen::Map<Eigen::Vector3f>(&rays.origin[3 * r]) = o.cast<float>();
+  return true;
+}
+
+}  // namespace
+
+PixelSampler::PixelSampler(const std::vector<View>& views) : views_(views), first_pixel_{0} {
+  for (const View& view : views) {
+    first_pixel_.push_back(first_pixel_.back() + static_cast<std::int64_t>(view.rgba.size() / 4));
+  }
+}
+
+TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uint64_t step) const {
+  TargetBatch batch;
+  batch.rays.Resize(rays);
+  batch.rgb.resize(3 * rays);
+  // A pixel that its lens does not reach is drawn again, so often that only a broken lens fails.
+  constexpr std::uint64_t kMostDraws = 256;
+  std::atomic<bool> failed = false;
+  ParallelFor(rays, 64, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t r = begin; r < end; ++r) {
+      for (std::uint64_t draw = 0;; ++draw) {
+        if (draw == kMostDraws) {
+          failed = true;
+          return;
+        }
+        const std::uint64_t bits =
+            RandomBits(seed, StreamOfStep(kPixelStream, step), kMostDraws * r + draw);
+        const auto global = static_cast<std::int64_t>(
+            bits % static_cast<std::uint64_t>(first_pixel_.back()));
+        const auto after = std::ranges::upper_bound(first_pixel_, global);
+        const View& view = views_[after - first_pixel_.begin() - 1];
+        const std::int64_t pixel = global - *(after - 1);
+        const Eigen::Vector2d centre(static_cast<double>(pixel % view.camera.width) + 0.5,
+                                     static_cast<double>(pixel / view.camera.width) + 0.5);
+        if (!SetRay(batch.rays, r, view.camera, view.normalized_from_camera, centre)) continue;
+        const Eigen::half* rgba = &view.rgba[4 * pixel];
+        const auto alpha = static_cast<float>(rgba[3]);
+        for (int c = 0; c < 3; ++c) {
+          const float background =
+              RandomFloat(seed, StreamOfStep(kBackgroundStream, step), 3 * r + c);
+          batch.rays.background[3 * r + c] = background;
+          batch.rgb[3 * r + c] = alpha * static_cast<float>(rgba[c]) + (1 - alpha) * background;
+        }
+        batch.rays.jitter[r] = RandomFloat(seed, StreamOfStep(kJitterStream, step), r);
+        break;
+      }
+    }
+  });
+  if (failed) {
+    throw sfm::InputError(
+        "the lens distortion of the cameras cannot be inverted at almost any pixel; check k1, k2, "
+        "p1, p2 in the poses");
+  }
+  return batch;
+}
+
+ViewRays RaysOfPixels(const sfm::Camera& camera, const Eigen::Isometry3d& normalized_from_camera,
+                      std::int64_t first_pixel, std::int64_t last_pixel,
+                      const Eigen::Vector3f& background) {
+  ViewRays out;
+  const std::int64_t count = last_pixel - first_pixel;
+  out.rays.Resize(count);
+  out.valid.assign(count, 1);
+  ParallelFor(count, 256, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t r = begin; r < end; ++r) {
+      const std::int64_t pixel = first_pixel + r;
+      const Eigen::Vector2d centre(static_cast<double>(pixel % camera.width) + 0.5,
+                                   static_cast<double>(pixel / camera.width) + 0.5);
+      out.valid[r] = SetRay(out.rays, r, camera, normalized_from_camera, centre);
+      Eigen::Map<Eigen::Vector3f>(&out.rays.background[3 * r]) = background;
+      out.rays.jitter[r] = 0.5f;
+    }
+  });
+  return out;
+}
+
+}  // namespace nerf

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "nerf/data/dataset.h"
+#include "nerf/sampling/rays.h"
+
+namespace nerf {
+
+// Rays together with the colours that photographs show along them.
+struct TargetBatch {
+  RayBatch rays;
+  std::vector<float> rgb;  // [R,3] composited on the ray's background where the photo has alpha
+};
+
+// Draws pixels of the training views, each equally likely, as rays. What is drawn is a function of
+// seed and step alone, whatever the number of threads. `views` must outlive the sampler.
+class PixelSampler {
+ public:
+  explicit PixelSampler(const std::vector<View>& views);
+
+  // The background of each ray is a random colour: it tells matter from a lucky backdrop, in the
+  // prediction as in the transparent pixels of a photograph.
+  // Throws sfm::InputError when a lens lets no pixel through.
+  TargetBatch Sample(std::int64_t rays, std::uint64_t seed, std::uint64_t step) const;
+
+ private:
+  const std::vector<View>& views_;
+  std::vector<std::int64_t> first_pixel_;  // [views+1] running count
+};
+
+// The rays through the centres of given pixels of a view, without jitter (0.5), on one background.
+// Pixels that the lens does not reach get `valid` 0 and a ray that must not be used.
+struct ViewRays {
+  RayBatch rays;
+  std::vector<std::uint8_t> valid;  // [R]
+};
+ViewRays RaysOfPixels(const sfm::Camera& camera, const Eigen::Isometry3d& normalized_from_camera,
+                      std::int64_t first_pixel, std::int64_t last_pixel,
+                      const Eigen::Vector3f& background);
+
+}  // namespace nerf

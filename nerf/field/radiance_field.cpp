@@ -1,0 +1,70 @@
+#include "nerf/field/radiance_field.h"
+
+#include "nerf/field/activations.h"
+#include "nerf/field/direction_encoding.h"
+#include "nerf/sampling/random.h"
+
+namespace nerf {
+namespace {
+
+// Starts thin: with density 1 a ray would be opaque before it has crossed the scene.
+constexpr double kLogDensityBias = -1.0;
+
+torch::Tensor ActivateDensity(const torch::Tensor& network_output) {
+  return TruncatedExp(network_output + kLogDensityBias);
+}
+
+// How much shorter lengths are in contracted space, along the radius: 1 inside the unit ball, and
+// 1/r^2 = (2 - |y|)^2 outside, for a contracted point y.
+torch::Tensor RadialShrinkage(const torch::Tensor& positions_in_cube) {
+  const torch::Tensor y = 4.0 * (positions_in_cube - 0.5);
+  return torch::clamp(2.0 - y.norm(2, 1), 0.0, 1.0).square();
+}
+
+std::vector<std::int64_t> ColorWidths(const FieldOptions& options) {
+  std::vector<std::int64_t> widths = {options.geometry_features + kDirectionFeatures};
+  widths.insert(widths.end(), options.color_layers, options.hidden_width);
+  widths.push_back(3);
+  return widths;
+}
+
+}  // namespace
+
+RadianceField::RadianceField(const kernels::HashGridOptions& grid, const FieldOptions& options,
+                             ColorEncoding encoding, std::uint64_t seed)
+    : encoding_(encoding), geometry_features_(options.geometry_features) {
+  hash_encoding_ = register_module("hash_encoding",
+                                   std::make_shared<HashEncoding>(grid, Mix64(seed + 0)));
+  density_network_ = register_module(
+      "density_network",
+      std::make_shared<Mlp>(
+          std::vector<std::int64_t>{hash_encoding_->Layout().OutputSize(), options.hidden_width,
+                                    1 + options.geometry_features},
+          Mix64(seed + 1)));
+  color_network_ =
+      register_module("color_network", std::make_shared<Mlp>(ColorWidths(options), Mix64(seed + 2)));
+}
+
+torch::Tensor RadianceField::ContractedDensity(const torch::Tensor& positions) {
+  const torch::Tensor out = density_network_->forward(hash_encoding_->forward(positions));
+  return ActivateDensity(out.select(1, 0));
+}
+
+torch::Tensor RadianceField::Density(const torch::Tensor& positions) {
+  return ContractedDensity(positions) * RadialShrinkage(positions);
+}
+
+FieldOutput RadianceField::forward(const torch::Tensor& positions, const torch::Tensor& directions,
+                                   const torch::Tensor& ray) {
+  const torch::Tensor out = density_network_->forward(hash_encoding_->forward(positions));
+  const torch::Tensor geometry = out.slice(1, 1);
+  // Encoded once a ray, then dealt to the ray's samples.
+  const torch::Tensor view = EncodeDirections(directions).index_select(0, ray);
+  const torch::Tensor color = color_network_->forward(torch::cat({geometry, view}, 1));
+  return {ActivateDensity(out.select(1, 0)) * RadialShrinkage(positions),
+          encoding_ == ColorEncoding::kSrgb ? torch::sigmoid(color) : TruncatedExp(color)};
+}
+
+torch::Dtype RadianceField::Dtype() const { return parameters().front().scalar_type(); }
+
+}  // namespace nerf

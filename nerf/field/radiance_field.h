@@ -1,0 +1,52 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include <memory>
+
+#include "nerf/data/image.h"
+#include "nerf/field/field_options.h"
+#include "nerf/field/hash_encoding.h"
+#include "nerf/field/mlp.h"
+
+namespace nerf {
+
+// What the field says of samples: density and the colour sent towards the camera.
+struct FieldOutput {
+  torch::Tensor sigma;     // [S]   1 / normalized scene unit, > 0
+  torch::Tensor radiance;  // [S,3] in [0,1] for sRGB-encoded fields, >= 0 for linear ones
+};
+
+// The parameters: a hash encoding of position, a density network, a colour network that also sees
+// the direction. Source: Mueller et al. 2022, section 5.4.
+class RadianceField : public torch::nn::Module {
+ public:
+  // encoding of colour: sRGB-encoded fields end in a sigmoid, linear ones in a truncated exponential.
+  RadianceField(const kernels::HashGridOptions& grid, const FieldOptions& options,
+                ColorEncoding encoding, std::uint64_t seed);
+
+  // positions [S,3] in the unit cube -> [S], 1 / normalized scene unit
+  torch::Tensor Density(const torch::Tensor& positions);
+  // The same in 1 / unit of contracted space, which is what the network says: outside the unit ball
+  // Density is that times 1/r^2. So a ray to infinity crosses a finite optical depth from the start
+  // on, and light from its end, the background, still teaches what stands before it.
+  torch::Tensor ContractedDensity(const torch::Tensor& positions);
+
+  //   positions   [S,3] in the unit cube
+  //   directions  [R,3] unit vectors, one a ray
+  //   ray         [S] int64, the ray of each sample
+  // Differentiable in the parameters.
+  FieldOutput forward(const torch::Tensor& positions, const torch::Tensor& directions,
+                      const torch::Tensor& ray);
+
+  torch::Dtype Dtype() const;
+
+ private:
+  ColorEncoding encoding_;
+  int geometry_features_;
+  std::shared_ptr<HashEncoding> hash_encoding_;
+  std::shared_ptr<Mlp> density_network_;  // encoded position -> log density, geometry features
+  std::shared_ptr<Mlp> color_network_;    // geometry features, direction features -> colour
+};
+
+}  // namespace nerf

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace nerf {
+
+// A contiguous CPU tensor as the plain span that kernels take.
+template <class T>
+std::span<T> Span(const torch::Tensor& tensor) {
+  return {tensor.data_ptr<std::remove_const_t<T>>(), static_cast<std::size_t>(tensor.numel())};
+}
+
+// A vector as a tensor of the given shape and type. Of the vector's own type it shares the memory,
+// which must outlive it.
+template <class T>
+torch::Tensor TensorOf(const std::vector<T>& values, at::IntArrayRef shape, torch::Dtype dtype) {
+  const auto own = c10::CppTypeToScalarType<T>::value;
+  return torch::from_blob(const_cast<T*>(values.data()), shape, own).to(dtype);
+}
+
+}  // namespace nerf

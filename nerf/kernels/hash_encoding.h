@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace nerf::kernels {
+
+// Multi-resolution hash encoding. Source: Mueller et al. 2022, "Instant Neural Graphics Primitives
+// with a Multiresolution Hash Encoding", section 3.
+struct HashGridOptions {
+  int levels = 16;
+  int features = 2;           // a level; 1, 2, 4 or 8
+  int log2_table_size = 18;   // most entries a level, as a power of two
+  int base_resolution = 16;   // cells along an axis at the coarsest level
+  int max_resolution = 2048;  // and at the finest
+};
+
+// One level: a lattice of (resolution + 1)^3 vertices over the unit cube. While they fit, each
+// vertex has its own entry ("dense"); beyond that entries are shared by a spatial hash.
+struct HashGridLevel {
+  std::uint32_t resolution = 0;
+  std::uint32_t size = 0;    // entries
+  std::int64_t offset = 0;   // first entry in the table
+  bool dense = false;
+};
+
+struct HashGridLayout {
+  int features = 0;
+  std::vector<HashGridLevel> levels;
+  std::int64_t entries = 0;
+
+  int OutputSize() const { return features * static_cast<int>(levels.size()); }
+};
+
+HashGridLayout MakeHashGridLayout(const HashGridOptions& options);
+
+// Entry of the lattice vertex (x, y, z) within its level.
+inline std::uint32_t HashGridIndex(const HashGridLevel& level, std::uint32_t x, std::uint32_t y,
+                                   std::uint32_t z) {
+  if (level.dense) {
+    const std::uint32_t side = level.resolution + 1;
+    return x + side * (y + side * z);
+  }
+  return (x ^ (y * 2654435761u) ^ (z * 805459861u)) & (level.size - 1);
+}
+
+// Trilinear interpolation of the entries at the 8 corners of the cell that holds each position.
+//   table      [entries, features]
+//   positions  [N,3] in [0,1]; the far faces belong to the last cell
+//   encoded    [N, levels * features], level after level
+// Samples [first, last) only, so that a caller can deal samples out to threads.
+template <class Real>
+void HashEncodeForward(const HashGridLayout& layout, std::span<const Real> table,
+                       std::span<const Real> positions, std::span<Real> encoded,
+                       std::int64_t first, std::int64_t last);
+
+// Adds dL/dtable of all N samples for the levels [first_level, last_level) only: a level's entries
+// belong to one thread, so that the scatter needs no atomics and repeats bit for bit.
+//   dL_dencoded  [N, levels * features]
+//   dL_dtable    [entries, features], added to
+template <class Real>
+void HashEncodeBackward(const HashGridLayout& layout, std::span<const Real> positions,
+                        std::span<const Real> dL_dencoded, std::span<Real> dL_dtable,
+                        int first_level, int last_level);
+
+}  // namespace nerf::kernels

@@ -1,0 +1,84 @@
+#include "nerf/output/contact_sheet.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "nerf/data/image_convert.h"
+#include "nerf/output/color_map.h"
+
+namespace nerf {
+namespace {
+
+constexpr int kMaxWidth = 2000;
+constexpr int kTiles = 3;  // truth, rendering, difference
+constexpr int kGap = 8;
+constexpr int kMaxTileWidth = (kMaxWidth - (kTiles + 1) * kGap) / kTiles;
+constexpr int kCaptionHeight = 20;
+constexpr int kFontSize = 14;
+
+using Tiles = std::array<Image, kTiles>;
+
+Image Fitted(const Image& image) {
+  const int factor = (image.width + kMaxTileWidth - 1) / kMaxTileWidth;
+  return Downscale(image, std::clamp(factor, 1, std::min(image.width, image.height)));
+}
+
+void Paste(const Image& tile, int left, int top, Image& sheet) {
+  for (int y = 0; y < tile.height; ++y) {
+    const int width = std::min(tile.width, sheet.width - left);
+    std::copy_n(tile.At(0, y), width * tile.channels, sheet.At(left, top + y));
+  }
+}
+
+// The first font that OpenImageIO can load here.
+std::optional<std::string> FindFont() {
+  for (const char* name : {"DejaVuSans", "LiberationSans-Regular", "Arial"}) {
+    OIIO::ImageBuf trial(OIIO::ImageSpec(8, 8, 3, OIIO::TypeFloat));
+    if (OIIO::ImageBufAlgo::render_text(trial, 0, 4, "a", kFontSize, name)) return name;
+  }
+  return std::nullopt;
+}
+
+void WriteCaption(const std::string& text, const std::string& font, int top, Image& sheet) {
+  OIIO::ImageBuf canvas(OIIO::ImageSpec(sheet.width, sheet.height, sheet.channels, OIIO::TypeFloat),
+                        sheet.pixels.data());
+  const std::array<float, 3> black = {0, 0, 0};
+  OIIO::ImageBufAlgo::render_text(canvas, kGap, top + kFontSize, text, kFontSize, font, black);
+}
+
+}  // namespace
+
+Image ContactSheet(std::span<const ContactSheetRow> rows) {
+  std::vector<Tiles> tiles;
+  int tile_width = 0;
+  const std::optional<std::string> font = FindFont();
+  const int caption_height = font ? kCaptionHeight : 0;
+  int height = kGap;
+  for (const ContactSheetRow& row : rows) {
+    tiles.push_back({Fitted(OnWhite(row.truth)), Fitted(OnWhite(row.rendering)),
+                     Fitted(ColorizeError(row.truth, row.rendering))});
+    tile_width = std::max(tile_width, tiles.back()[0].width);
+    height += caption_height + tiles.back()[0].height + kGap;
+  }
+  if (rows.empty()) return {};
+
+  Image sheet(kTiles * tile_width + (kTiles + 1) * kGap, height, 3);
+  std::ranges::fill(sheet.pixels, 1.0f);
+  int top = kGap;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    if (font) WriteCaption(rows[i].caption, *font, top, sheet);
+    top += caption_height;
+    for (int k = 0; k < kTiles; ++k) {
+      Paste(tiles[i][k], kGap + k * (tile_width + kGap), top, sheet);
+    }
+    top += tiles[i][0].height + kGap;
+  }
+  return sheet;
+}
+
+}  // namespace nerf

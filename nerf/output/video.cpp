@@ -1,0 +1,90 @@
+#include "nerf/output/video.h"
+
+#include <boost/process.hpp>
+#include <vector>
+
+#include "nerf/data/temporary_file.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+namespace {
+
+namespace bp = boost::process;
+namespace fs = std::filesystem;
+
+// As ffmpeg's image reader takes it: a percent sign in a folder's name would be a pattern.
+std::string FramePattern(const fs::path& folder) {
+  std::string pattern = "file:";
+  for (const char c : folder.string()) pattern += c == '%' ? "%%" : std::string(1, c);
+  return pattern + "/%05d.png";
+}
+
+std::vector<std::string> Arguments(const fs::path& frames_folder, double frames_per_second,
+                                   const fs::path& output) {
+  return {"-nostdin",
+          "-y",
+          "-loglevel",
+          "error",
+          "-framerate",
+          fmt::format("{}", frames_per_second),
+          "-start_number",
+          "0",
+          "-i",
+          FramePattern(frames_folder),
+          "-vf",
+          "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
+          "-c:v",
+          "libx264",
+          "-crf",
+          "18",
+          "-colorspace",
+          "bt709",
+          "-color_primaries",
+          "bt709",
+          "-color_trc",
+          "bt709",
+          "-movflags",
+          "+faststart",
+          "file:" + output.string()};
+}
+
+}  // namespace
+
+bool FfmpegIsInstalled() { return !bp::search_path("ffmpeg").empty(); }
+
+std::string FrameName(int index) { return fmt::format("{:05d}.png", index); }
+
+void WriteVideo(const fs::path& frames_folder, double frames_per_second, const fs::path& video) {
+  if (video.extension() != ".mp4") {
+    throw sfm::InputError("{}: films are written as .mp4, give that ending", video.string());
+  }
+  if (!(frames_per_second > 0 && frames_per_second <= 1000)) {
+    throw sfm::InputError("{}: {} frames a second, give more than 0 and at most 1000",
+                          video.string(), frames_per_second);
+  }
+  if (!fs::exists(frames_folder / FrameName(0))) {
+    throw sfm::InputError("{}: no such frame to make a film of",
+                          (frames_folder / FrameName(0)).string());
+  }
+  const boost::filesystem::path ffmpeg = bp::search_path("ffmpeg");
+  if (ffmpeg.empty()) {
+    throw sfm::InputError("{}: films need the program ffmpeg, install it (apt install ffmpeg)",
+                          video.string());
+  }
+  TemporaryFile file(video);
+  bp::ipstream complaints;
+  bp::child child(ffmpeg, bp::args = Arguments(frames_folder, frames_per_second, file.path()),
+                  bp::std_in<bp::null, bp::std_out> bp::null, bp::std_err > complaints);
+  std::string last_line;
+  for (std::string line; std::getline(complaints, line);) {
+    if (!line.empty()) last_line = line;
+  }
+  child.wait();
+  if (child.exit_code() != 0) {
+    throw sfm::InputError("{}: ffmpeg failed: {}", video.string(),
+                          last_line.empty() ? "it said nothing" : last_line);
+  }
+  file.Keep();
+}
+
+}  // namespace nerf

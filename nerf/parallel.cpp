@@ -1,0 +1,64 @@
+#include "nerf/parallel.h"
+
+#include <omp.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <fstream>
+#include <mutex>
+#include <string>
+
+namespace nerf {
+namespace {
+
+// The CPU quota of cgroup v2, in cores; 0 where there is none.
+double CgroupCores() {
+  std::ifstream file("/sys/fs/cgroup/cpu.max");
+  std::string quota;
+  double period = 0;
+  if (!(file >> quota >> period) || quota == "max" || period <= 0) return 0;
+  return std::strtod(quota.c_str(), nullptr) / period;
+}
+
+}  // namespace
+
+int AvailableCores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  int cores = sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : 1;
+  if (const double quota = CgroupCores(); quota > 0) {
+    cores = std::min(cores, static_cast<int>(std::ceil(quota)));
+  }
+  return std::max(1, cores);
+}
+
+void SetNumThreads(int threads) { omp_set_num_threads(std::max(1, threads)); }
+
+int NumThreads() { return omp_get_max_threads(); }
+
+void ParallelFor(std::int64_t count, std::int64_t grain,
+                 const std::function<void(std::int64_t, std::int64_t)>& body) {
+  if (count <= 0) return;
+  const std::int64_t most = (count + grain - 1) / std::max<std::int64_t>(1, grain);
+  const std::int64_t chunks = std::min<std::int64_t>(NumThreads(), most);
+  if (chunks <= 1) {
+    body(0, count);
+    return;
+  }
+  std::exception_ptr failure;
+  std::mutex mutex;
+#pragma omp parallel for schedule(static, 1) num_threads(static_cast<int>(chunks))
+  for (std::int64_t k = 0; k < chunks; ++k) {
+    try {
+      body(count * k / chunks, count * (k + 1) / chunks);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace nerf

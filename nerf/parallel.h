@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace nerf {
+
+// Cores this process may use: the affinity mask, and the cgroup's CPU quota rounded up.
+int AvailableCores();
+
+// Number of threads that ParallelFor uses. LibTorch and OpenBLAS share the same OpenMP pool.
+void SetNumThreads(int threads);
+int NumThreads();
+
+// Calls body(begin, end) on consecutive chunks of [0, count), one chunk a thread, and waits. The
+// cut depends on `count`, `grain` and the number of threads alone, so results repeat.
+//   grain  smallest chunk worth a thread
+// An exception in a chunk is rethrown here after all have ended.
+void ParallelFor(std::int64_t count, std::int64_t grain,
+                 const std::function<void(std::int64_t, std::int64_t)>& body);
+
+}  // namespace nerf

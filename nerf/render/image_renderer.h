@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+
+#include "nerf/data/image.h"
+#include "nerf/render/ray_renderer.h"
+#include "sfm/posed_images.h"
+
+namespace nerf {
+
+// A rendered view. Pixels that the lens does not reach are the background with opacity 0.
+struct RenderedView {
+  Image rgb;      // 3 channels
+  Image opacity;  // 1 channel, [0,1]
+  Image depth;    // 1 channel, distance along the ray in normalized scene units, 0 where undefined
+};
+
+// Renders every pixel of a camera, a tile of rays at a time, so that memory does not grow with the
+// size of the image beyond the image itself.
+//   progress  called with the number of pixels done, after each tile; throw from it to stop
+RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
+                        const Eigen::Isometry3d& normalized_from_camera,
+                        const Eigen::Vector3f& background, ColorEncoding encoding,
+                        const std::function<void(std::int64_t)>& progress = {});
+
+}  // namespace nerf

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <torch/torch.h>
+
+namespace nerf {
+
+struct VolumeRendering {
+  torch::Tensor rgb;      // [R,3]
+  torch::Tensor opacity;  // [R] in [0,1]
+  torch::Tensor depth;    // [R] sum of weight times t; divided by opacity, the expected depth
+};
+
+// Composites samples front to back: w_i = T_i (1 - exp(-sigma_i dt_i)).
+// Source: Max 1995; Mildenhall et al. 2020. See nerf/kernels/volume_rendering.h for what keeps it
+// right in the hard cases.
+//   ray_begin   [R+1] int64, first sample of each ray; the last entry is S
+//   sigma       [S]   1 / scene unit, >= 0
+//   radiance    [S,3]
+//   dt, t       [S]   scene units; length and place of each sample's interval
+//   background  [R,3]
+//   returns     of an empty ray: the background, opacity 0, depth 0
+// Differentiable in sigma, radiance and background, not in the sample positions. float or double.
+// Throws c10::Error on a shape or type mismatch.
+VolumeRendering RenderVolume(const torch::Tensor& ray_begin, const torch::Tensor& sigma,
+                             const torch::Tensor& radiance, const torch::Tensor& dt,
+                             const torch::Tensor& t, const torch::Tensor& background);
+
+}  // namespace nerf

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "nerf/sample/sample_options.h"
+
+namespace nerf::sample {
+
+// Photographs the built-in scene into a folder, which is made where it does not exist:
+//   images/view_000.png, ...        photographs, 8-bit sRGB, all that structure from motion and
+//                                   training may see
+//   truth/transforms.json           true poses, pointing at ../images
+//   truth/view_000.depth.exr        distance along the ray, scene units
+//   truth/view_000.normal.exr       unit normals, world axes
+//   truth/view_000.albedo.exr       linear
+// An earlier sample in the folder is replaced, file by file, and what it had more of is removed.
+// Throws sfm::InputError where the options are out of range, the folder cannot be written, or it
+// holds something that is not a sample (nothing in it is touched then).
+void WriteSample(const std::filesystem::path& folder, const SampleOptions& options);
+
+}  // namespace nerf::sample

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <variant>
+
+namespace nerf::sample {
+
+// Reflectance or radiance, linear RGB with the primaries of sRGB.
+using Color = Eigen::Vector3d;
+
+// The linear colour of an sRGB value as people write it, e.g. 0xd9a441.
+Color ColorFromSrgbHex(std::uint32_t rgb);
+
+// Solid textures: functions of a point, so they need no unwrapping of surfaces. They are built from
+// hashes of lattice cells and never repeat, so that every patch can be told from every other one:
+// what feature matching needs. Lengths are in scene units.
+
+// The same colour everywhere.
+struct Plain {
+  Color color = Color::Constant(0.5);
+};
+
+// A colour ramp driven by fractal noise: veins and clouds at every scale.
+struct Marble {
+  std::array<Color, 4> ramp;
+  double frequency = 4;  // of the coarsest octave, 1 / scene unit
+  int octaves = 5;
+  std::uint32_t seed = 0;
+};
+
+// Cubes of one size, each with a colour and a brightness of its own, in joints of mortar.
+struct Mosaic {
+  std::array<Color, 4> palette;
+  Color mortar = Color::Zero();
+  double tile = 0.1;   // edge of a cube, scene units
+  double joint = 0.1;  // width of a joint, as a fraction of the tile
+  std::uint32_t seed = 0;
+};
+
+// Round chips of several sizes strewn in a mottled base.
+struct Terrazzo {
+  Color base = Color::Constant(0.5);
+  std::array<Color, 4> chips;
+  double largest = 0.3;  // cell of the largest chips, scene units; each level below has half of it
+  int levels = 3;
+  std::uint32_t seed = 0;
+};
+
+// A sky with clouds, to be evaluated on directions.
+struct Sky {
+  Color zenith = Color::Constant(0.5);
+  Color horizon = Color::Constant(0.5);
+  Color cloud = Color::Constant(0.5);
+  double frequency = 4;
+  std::uint32_t seed = 0;
+};
+
+using Texture = std::variant<Plain, Marble, Mosaic, Terrazzo, Sky>;
+
+// Colour of a texture at a point, each channel in [0, 1] as long as the texture's own colours are.
+Color Evaluate(const Texture& texture, const Eigen::Vector3d& x);
+
+// Gradient noise: smooth, zero at the lattice points, of wavelength about 1, within [-1, 1].
+// Source: Perlin 2002, "Improving Noise".
+double GradientNoise(const Eigen::Vector3d& x, std::uint32_t seed);
+
+// Sum of `octaves` gradient noises, each of twice the frequency and 0.6 times the amplitude of the
+// one before; scaled so that most values lie in [-1, 1].
+double FractalNoise(const Eigen::Vector3d& x, int octaves, std::uint32_t seed);
+
+}  // namespace nerf::sample

@@ -1,0 +1,127 @@
+#include "nerf/sampling/occupancy_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nerf/parallel.h"
+#include "nerf/sampling/contraction.h"
+#include "nerf/sampling/random.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+namespace {
+
+// Streams of random numbers, apart from those of rays and pixels.
+constexpr std::uint64_t kPickStream = 0x6f63635f7069636bull;
+constexpr std::uint64_t kOffsetStream = 0x6f63635f6f666673ull;
+
+constexpr float kNeverSeen = -1.0f;
+
+}  // namespace
+
+void OccupancyOptions::Check() const {
+  if (resolution < 2 || resolution > 512) {
+    throw sfm::InputError("config: occupancy.resolution is {}; use 2 to 512", resolution);
+  }
+  if (!(decay > 0 && decay < 1)) {
+    throw sfm::InputError("config: occupancy.decay is {}; use a value between 0 and 1", decay);
+  }
+  if (!(threshold > 0 && threshold < 1)) {
+    throw sfm::InputError("config: occupancy.threshold is {}; use a value between 0 and 1",
+                          threshold);
+  }
+  if (warmup_steps < 0) throw sfm::InputError("config: occupancy.warmup_steps must not be negative");
+  if (update_every < 1) throw sfm::InputError("config: occupancy.update_every must be at least 1");
+}
+
+OccupancyGrid::OccupancyGrid(const OccupancyOptions& options, float step_length)
+    : options_(options), step_length_(step_length) {
+  const std::int64_t n = options.resolution;
+  density_.assign(n * n * n, 0.0f);
+  occupied_.assign(n * n * n, 1);
+}
+
+std::int64_t OccupancyGrid::CellOf(const Eigen::Vector3f& position) const {
+  const auto n = static_cast<float>(options_.resolution);
+  const Eigen::Array3f scaled = position.array() * n;
+  if (!((scaled >= 0).all() && (scaled <= n).all())) return -1;
+  const Eigen::Array3i cell = scaled.cast<int>().min(options_.resolution - 1);
+  return (static_cast<std::int64_t>(cell[2]) * options_.resolution + cell[1]) * options_.resolution +
+         cell[0];
+}
+
+Eigen::Vector3f OccupancyGrid::CellCorner(std::int64_t cell) const {
+  const std::int64_t n = options_.resolution;
+  return Eigen::Vector3f(static_cast<float>(cell % n), static_cast<float>(cell / n % n),
+                         static_cast<float>(cell / (n * n))) /
+         static_cast<float>(n);
+}
+
+void OccupancyGrid::KeepVisible(const std::function<bool(const Eigen::Vector3f&, float)>& visible) {
+  const float side = 1.0f / static_cast<float>(options_.resolution);
+  const float half_diagonal = 0.5f * std::sqrt(3.0f) * side;
+  ParallelFor(static_cast<std::int64_t>(density_.size()), 4096,
+              [&](std::int64_t begin, std::int64_t end) {
+                for (std::int64_t cell = begin; cell < end; ++cell) {
+                  const Eigen::Vector3f centre = CellCorner(cell).array() + 0.5f * side;
+                  // Corners of the cube beyond the ball of contracted space hold nothing at all.
+                  const bool in_ball = ContractedFromUnitCube(centre).norm() < 2.0f;
+                  density_[cell] = in_ball && visible(centre, half_diagonal) ? 0.0f : kNeverSeen;
+                  occupied_[cell] = density_[cell] == 0.0f;
+                }
+              });
+}
+
+void OccupancyGrid::Update(std::int64_t step, std::uint64_t seed, const DensityFunction& density) {
+  const auto cells = static_cast<std::int64_t>(density_.size());
+  std::vector<std::int64_t> picked;
+  for (std::int64_t cell = 0; cell < cells; ++cell) {
+    if (density_[cell] == kNeverSeen) continue;
+    const std::uint64_t draw = RandomBits(seed, kPickStream + step, cell) & 7;
+    const bool often = occupied_[cell] || step < options_.warmup_steps;
+    if (draw < (often ? 2 : 1)) picked.push_back(cell);
+  }
+
+  const float side = 1.0f / static_cast<float>(options_.resolution);
+  std::vector<float> positions(3 * picked.size());
+  for (std::size_t k = 0; k < picked.size(); ++k) {
+    const Eigen::Vector3f corner = CellCorner(picked[k]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float offset = RandomFloat(seed, kOffsetStream + step, 3 * picked[k] + axis);
+      positions[3 * k + axis] = corner[axis] + side * offset;
+    }
+  }
+  const std::vector<float> fresh = density(positions);
+  const auto decay = static_cast<float>(options_.decay);
+
+  for (std::size_t k = 0; k < picked.size(); ++k) {
+    float& remembered = density_[picked[k]];
+    remembered = std::max(decay * remembered, fresh[k]);
+  }
+  Refresh();
+}
+
+void OccupancyGrid::Refresh() {
+  // A cell counts once a step through it would be opaque to `threshold`; while the whole scene is
+  // thinner than that, what is denser than the mean counts, so that training always has samples.
+  double sum = 0;
+  std::int64_t seen = 0;
+  for (const float remembered : density_) {
+    if (remembered == kNeverSeen) continue;
+    sum += std::min(remembered, 1e6f);
+    ++seen;
+  }
+  const auto mean = static_cast<float>(seen > 0 ? sum / static_cast<double>(seen) : 0.0);
+  const auto opaque = static_cast<float>(-std::log1p(-options_.threshold) / step_length_);
+  const float bound = std::min(mean, opaque);
+  for (std::size_t cell = 0; cell < density_.size(); ++cell) {
+    occupied_[cell] = density_[cell] != kNeverSeen && density_[cell] >= bound;
+  }
+}
+
+double OccupancyGrid::OccupiedFraction() const {
+  const auto count = std::count(occupied_.begin(), occupied_.end(), std::uint8_t{1});
+  return static_cast<double>(count) / static_cast<double>(occupied_.size());
+}
+
+}  // namespace nerf

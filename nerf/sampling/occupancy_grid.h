@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace nerf {
+
+struct OccupancyOptions {
+  int resolution = 128;     // cells along an axis of contracted space
+  double decay = 0.8;       // of a cell's remembered density each time it is drawn again
+  double threshold = 0.01;  // opacity of one marching step at which a cell counts as occupied
+  int warmup_steps = 256;   // training steps during which empty cells are drawn as often as others
+  int update_every = 16;    // training steps between updates
+
+  void Check() const;
+};
+
+// Remembers where contracted space may hold matter, so that rays step over the rest.
+// Source: Mueller et al. 2022, appendix E.2 ("occupancy grids"): the maximum of the decayed memory
+// and a fresh density at a random point of the cell.
+class OccupancyGrid {
+ public:
+  // step_length: the marcher's step in contracted space, which turns densities into opacities.
+  // All cells start as occupied.
+  OccupancyGrid(const OccupancyOptions& options, float step_length);
+
+  const OccupancyOptions& Options() const { return options_; }
+
+  // Whether the cell of a position in the unit cube may hold matter. Outside the cube: no.
+  bool Occupied(const Eigen::Vector3f& position) const {
+    const std::int64_t cell = CellOf(position);
+    return cell >= 0 && occupied_[cell] != 0;
+  }
+
+  // Cells for which `visible(centre and half diagonal of the cell, in the unit cube)` is false are
+  // empty for good: what no training photograph sees cannot be learned, only dreamt.
+  void KeepVisible(const std::function<bool(const Eigen::Vector3f&, float)>& visible);
+
+  // Draws fresh densities for a random quarter of the occupied cells and an eighth of the others (a
+  // quarter too during warm-up), then decides anew which cells are occupied.
+  //   density  positions [N,3] in the unit cube -> [N], 1 / unit of contracted space
+  using DensityFunction = std::function<std::vector<float>(std::span<const float>)>;
+  void Update(std::int64_t step, std::uint64_t seed, const DensityFunction& density);
+
+  double OccupiedFraction() const;
+
+  // The state that a checkpoint keeps.
+  std::vector<float>& Density() { return density_; }              // [cells] remembered, -1: never seen
+  const std::vector<float>& Density() const { return density_; }
+  void Refresh();  // decides from Density() which cells are occupied
+
+ private:
+  std::int64_t CellOf(const Eigen::Vector3f& position) const;
+  Eigen::Vector3f CellCorner(std::int64_t cell) const;
+
+  OccupancyOptions options_;
+  float step_length_;
+  std::vector<float> density_;
+  std::vector<std::uint8_t> occupied_;
+};
+
+}  // namespace nerf

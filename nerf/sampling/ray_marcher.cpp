@@ -1,0 +1,107 @@
+#include "nerf/sampling/ray_marcher.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "nerf/parallel.h"
+#include "nerf/sampling/contraction.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+namespace {
+
+struct RaySamples {
+  std::vector<float> position, t, dt;
+};
+
+void MarchRay(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float jitter,
+              const OccupancyGrid& grid, const MarchOptions& options, RaySamples& out) {
+  const float step = options.StepLength();
+  // Far out along the ray the contracted point hardly moves; without a bound one step would be
+  // longer than everything before it.
+  constexpr float kSlowest = 1e-6f;
+  const auto far_distance = static_cast<float>(options.far_distance);
+  auto t = static_cast<float>(options.near_distance);
+  float fraction = 1.0f - jitter;
+  while (t < far_distance) {
+    const float speed = ContractedSpeed(origin + t * direction, direction);
+    const float dt =
+        std::min(fraction * step / std::max(speed, kSlowest), far_distance - t);
+    fraction = 1.0f;
+    const float middle = t + 0.5f * dt;
+    const Eigen::Vector3f x_in_cube =
+        UnitCubeFromContracted(Contract(origin + middle * direction));
+    if (grid.Occupied(x_in_cube)) {
+      out.position.insert(out.position.end(), {x_in_cube[0], x_in_cube[1], x_in_cube[2]});
+      out.t.push_back(middle);
+      out.dt.push_back(dt);
+    }
+    // Even where a step is too short for the precision of t, the ray must move on.
+    t = std::max(t + dt, std::nextafter(t, far_distance));
+  }
+}
+
+}  // namespace
+
+void MarchOptions::Check() const {
+  if (!(near_distance >= 0 && near_distance < far_distance && far_distance <= 1e6f)) {
+    throw sfm::InputError(
+        "config: march.near_distance {} and march.far_distance {} must satisfy "
+        "0 <= near < far <= 1e6",
+        near_distance, far_distance);
+  }
+  if (steps_per_unit < 1 || steps_per_unit > 4096) {
+    throw sfm::InputError("config: march.steps_per_unit is {}; use 1 to 4096", steps_per_unit);
+  }
+  if (!(stop_transmittance > 0 && stop_transmittance < 1)) {
+    throw sfm::InputError("config: march.stop_transmittance is {}; use a value between 0 and 1",
+                          stop_transmittance);
+  }
+}
+
+PackedSamples MarchRays(const RayBatch& rays, const OccupancyGrid& grid,
+                        const MarchOptions& options) {
+  const std::int64_t count = rays.Size();
+  // A fixed number of chunks, each with its own buffers, joined in order: the result does not
+  // depend on the number of threads.
+  constexpr std::int64_t kChunk = 64;
+  const std::int64_t chunks = (count + kChunk - 1) / kChunk;
+  std::vector<RaySamples> parts(chunks);
+  PackedSamples out;
+  out.ray_begin.assign(count + 1, 0);
+  ParallelFor(chunks, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t chunk = begin; chunk < end; ++chunk) {
+      const std::int64_t last = std::min(count, (chunk + 1) * kChunk);
+      for (std::int64_t r = chunk * kChunk; r < last; ++r) {
+        const std::size_t before = parts[chunk].t.size();
+        MarchRay(Eigen::Map<const Eigen::Vector3f>(&rays.origin[3 * r]),
+                 Eigen::Map<const Eigen::Vector3f>(&rays.direction[3 * r]), rays.jitter[r], grid,
+                 options, parts[chunk]);
+        out.ray_begin[r + 1] = static_cast<std::int64_t>(parts[chunk].t.size() - before);
+      }
+    }
+  });
+  for (std::int64_t r = 0; r < count; ++r) out.ray_begin[r + 1] += out.ray_begin[r];
+
+  const std::int64_t size = out.ray_begin[count];
+  out.ray.resize(size);
+  out.position.resize(3 * size);
+  out.t.resize(size);
+  out.dt.resize(size);
+  ParallelFor(chunks, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t chunk = begin; chunk < end; ++chunk) {
+      const std::int64_t first = chunk * kChunk, last = std::min(count, first + kChunk);
+      const std::int64_t at = out.ray_begin[first];
+      std::copy(parts[chunk].position.begin(), parts[chunk].position.end(),
+                out.position.begin() + 3 * at);
+      std::copy(parts[chunk].t.begin(), parts[chunk].t.end(), out.t.begin() + at);
+      std::copy(parts[chunk].dt.begin(), parts[chunk].dt.end(), out.dt.begin() + at);
+      for (std::int64_t r = first; r < last; ++r) {
+        std::fill(out.ray.begin() + out.ray_begin[r], out.ray.begin() + out.ray_begin[r + 1], r);
+      }
+    }
+  });
+  return out;
+}
+
+}  // namespace nerf

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+#include "nerf/data/pixel_sampler.h"
+#include "nerf/render/ray_renderer.h"
+
+namespace nerf {
+
+class OccupancyGrid;
+
+struct StepResult {
+  double loss = 0;            // mean over rays and channels
+  double squared_error = 0;   // mean over rays and channels, for PSNR
+  std::int64_t marched = 0;   // samples in occupied cells
+  std::int64_t shaded = 0;    // samples of them that light reaches, on which gradients were taken
+};
+
+// Evaluates rays, with gradients or without. Two engines, one meaning: LibTorchEngine composes
+// autograd operations and is the definition; a fused engine may take its place behind this door.
+// The trainer, the optimiser and the commands never know which one runs.
+class Engine : public RayRenderer {
+ public:
+  // Renders the rays, compares them with the targets, and leaves dL/dparameter in the gradients of
+  // the field's parameters (which must be undefined or zero before).
+  // Throws NonFiniteError when the loss is not finite.
+  virtual StepResult AccumulateGradients(const TargetBatch& batch) = 0;
+
+  // Draws fresh densities into the occupancy grid.
+  virtual void UpdateOccupancy(std::int64_t step, std::uint64_t seed) = 0;
+};
+
+}  // namespace nerf

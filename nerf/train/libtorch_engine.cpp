@@ -1,0 +1,163 @@
+#include "nerf/train/libtorch_engine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nerf/field/tensor_span.h"
+#include "nerf/kernels/volume_rendering.h"
+#include "nerf/parallel.h"
+#include "nerf/render/volume_rendering.h"
+#include "nerf/train/losses.h"
+#include "nerf/train/non_finite_error.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+namespace {
+
+// Samples a single evaluation of the field takes when no gradients are needed: intermediate results
+// then stay near the cache, and memory bounded.
+constexpr std::int64_t kChunk = 1 << 15;
+
+// Scales what reaches the field's outputs on the way back; forward nothing changes.
+void ScaleGradients(const FieldOutput& field, const torch::Tensor& t, double full_distance) {
+  if (full_distance == 0 || !field.sigma.requires_grad()) return;
+  const torch::Tensor scale = torch::clamp((t / full_distance).square(), 0.0, 1.0);
+  field.sigma.register_hook([scale](const torch::Tensor& g) { return g * scale; });
+  field.radiance.register_hook([scale](const torch::Tensor& g) { return g * scale.unsqueeze(1); });
+}
+
+// Names the first ray whose colour is not finite, and the stage that spoilt it.
+std::string DescribeNonFinite(const PackedSamples& samples, const FieldOutput& field,
+                              const torch::Tensor& rgb) {
+  const auto first_bad = [](const torch::Tensor& values) {
+    const torch::Tensor bad = torch::nonzero(torch::logical_not(torch::isfinite(values)));
+    return bad.size(0) > 0 ? bad[0][0].item<std::int64_t>() : std::int64_t{-1};
+  };
+  if (const std::int64_t s = first_bad(field.sigma); s >= 0) {
+    return fmt::format("ray {}, stage density, sample at t = {}", samples.ray[s], samples.t[s]);
+  }
+  if (const std::int64_t s = first_bad(field.radiance); s >= 0) {
+    return fmt::format("ray {}, stage colour, sample at t = {}", samples.ray[s], samples.t[s]);
+  }
+  if (const std::int64_t r = first_bad(rgb); r >= 0) {
+    return fmt::format("ray {}, stage compositing", r);
+  }
+  return "stage loss (target colours)";
+}
+
+}  // namespace
+
+struct LibTorchEngine::Evaluated {
+  PackedSamples samples;
+  std::int64_t marched = 0;
+  FieldOutput field;
+  VolumeRendering pixels;
+};
+
+LibTorchEngine::LibTorchEngine(std::shared_ptr<RadianceField> field,
+                               std::shared_ptr<OccupancyGrid> grid, const MarchOptions& march,
+                               const LossOptions& loss,
+                               const GradientScalingOptions& gradient_scaling)
+    : field_(std::move(field)),
+      grid_(std::move(grid)),
+      march_(march),
+      loss_(loss),
+      gradient_scaling_(gradient_scaling) {}
+
+// Densities without gradients, a chunk of positions at a time.
+std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
+                                             DensityFunction density) {
+  const torch::NoGradGuard no_grad;
+  const auto size = static_cast<std::int64_t>(positions.size() / 3);
+  std::vector<float> sigma(size);
+  for (std::int64_t first = 0; first < size; first += kChunk) {
+    const std::int64_t count = std::min(kChunk, size - first);
+    const torch::Tensor chunk =
+        torch::from_blob(const_cast<float*>(&positions[3 * first]), {count, 3}).to(field_->Dtype());
+    const torch::Tensor part = (field_.get()->*density)(chunk).to(torch::kFloat).contiguous();
+    std::copy_n(part.data_ptr<float>(), count, sigma.begin() + first);
+  }
+  return sigma;
+}
+
+// The samples in front of the point where a ray's transmittance falls below the bound: found from
+// densities alone and without gradients, so that colour and gradients are computed for no other.
+PackedSamples LibTorchEngine::VisibleSamples(const PackedSamples& samples) {
+  const std::vector<float> sigma = Densities(samples.position, &RadianceField::Density);
+  std::vector<std::int64_t> kept(samples.Rays());
+  ParallelFor(samples.Rays(), 64, [&](std::int64_t first, std::int64_t last) {
+    kernels::CountVisible<float>(samples.ray_begin, sigma, samples.dt, march_.stop_transmittance,
+                                 kept, first, last);
+  });
+  return KeepFront(samples, kept);
+}
+
+// A ray's way from its origin to its pixel.
+LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
+  const torch::Dtype dtype = field_->Dtype();
+  const PackedSamples marched = MarchRays(rays, *grid_, march_);
+  Evaluated out;
+  out.marched = marched.Size();
+  out.samples = VisibleSamples(marched);
+
+  const std::int64_t count = rays.Size();
+  const std::int64_t size = out.samples.Size();
+  const torch::Tensor positions = TensorOf(out.samples.position, {size, 3}, dtype);
+  const torch::Tensor directions = TensorOf(rays.direction, {count, 3}, dtype);
+  const torch::Tensor ray = TensorOf(out.samples.ray, {size}, torch::kLong);
+  const torch::Tensor t = TensorOf(out.samples.t, {size}, dtype);
+  out.field = field_->forward(positions, directions, ray);
+  ScaleGradients(out.field, t, gradient_scaling_.full_distance);
+
+  out.pixels = RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong),
+                            out.field.sigma, out.field.radiance,
+                            TensorOf(out.samples.dt, {size}, dtype), t,
+                            TensorOf(rays.background, {count, 3}, dtype));
+  return out;
+}
+
+RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
+  const torch::NoGradGuard no_grad;
+  const Evaluated out = Evaluate(rays);
+  const auto to_vector = [](const torch::Tensor& tensor) {
+    const torch::Tensor flat = tensor.to(torch::kFloat).contiguous();
+    return std::vector<float>(flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel());
+  };
+  RenderOutput result = {to_vector(out.pixels.rgb), to_vector(out.pixels.opacity),
+                         to_vector(out.pixels.depth), out.marched + out.samples.Size()};
+  for (std::size_t r = 0; r < result.depth.size(); ++r) {
+    if (result.opacity[r] > 0) {
+      result.depth[r] = std::clamp(result.depth[r] / result.opacity[r],
+                                   static_cast<float>(march_.near_distance),
+                                   static_cast<float>(march_.far_distance));
+    }
+  }
+  return result;
+}
+
+StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
+  const Evaluated out = Evaluate(batch.rays);
+  const torch::Tensor target =
+      TensorOf(batch.rgb, {batch.rays.Size(), 3}, out.pixels.rgb.scalar_type());
+  const torch::Tensor loss = ColorLoss(out.pixels.rgb, target, loss_);
+  StepResult result;
+  result.loss = loss.item<double>();
+  if (!std::isfinite(result.loss)) {
+    throw NonFiniteError("the loss is not finite: " +
+                         DescribeNonFinite(out.samples, out.field, out.pixels.rgb));
+  }
+  // A batch whose rays meet no occupied cell has no parameters to blame.
+  if (loss.requires_grad()) loss.backward();
+  result.squared_error = torch::mse_loss(out.pixels.rgb.detach(), target).item<double>();
+  result.marched = out.marched;
+  result.shaded = out.samples.Size();
+  return result;
+}
+
+void LibTorchEngine::UpdateOccupancy(std::int64_t step, std::uint64_t seed) {
+  grid_->Update(step, seed, [this](std::span<const float> positions) {
+    return Densities(positions, &RadianceField::ContractedDensity);
+  });
+}
+
+}  // namespace nerf

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "nerf/field/radiance_field.h"
+#include "nerf/sampling/occupancy_grid.h"
+#include "nerf/sampling/ray_marcher.h"
+#include "nerf/train/engine.h"
+#include "nerf/train/train_options.h"
+
+namespace nerf {
+
+// The definition of what rays see: each stage an autograd operation on whole batches, in float or,
+// after field->to(torch::kDouble), in double.
+class LibTorchEngine : public Engine {
+ public:
+  LibTorchEngine(std::shared_ptr<RadianceField> field, std::shared_ptr<OccupancyGrid> grid,
+                 const MarchOptions& march, const LossOptions& loss,
+                 const GradientScalingOptions& gradient_scaling);
+
+  RenderOutput Render(const RayBatch& rays) override;
+  StepResult AccumulateGradients(const TargetBatch& batch) override;
+  void UpdateOccupancy(std::int64_t step, std::uint64_t seed) override;
+
+ private:
+  struct Evaluated;
+  Evaluated Evaluate(const RayBatch& rays);
+  PackedSamples VisibleSamples(const PackedSamples& samples);
+  using DensityFunction = torch::Tensor (RadianceField::*)(const torch::Tensor&);
+  std::vector<float> Densities(std::span<const float> positions, DensityFunction density);
+
+  std::shared_ptr<RadianceField> field_;
+  std::shared_ptr<OccupancyGrid> grid_;
+  MarchOptions march_;
+  LossOptions loss_;
+  GradientScalingOptions gradient_scaling_;
+};
+
+}  // namespace nerf

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace nerf {
+
+// Training met a value that is not finite. The message names the step, the ray and the stage.
+class NonFiniteError : public std::runtime_error {
+ public:
+  explicit NonFiniteError(const std::string& message) : std::runtime_error(message) {}
+};
+
+}  // namespace nerf

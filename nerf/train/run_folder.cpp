@@ -1,0 +1,32 @@
+#include "nerf/train/run_folder.h"
+
+#include "nerf/train/checkpoint.h"
+#include "sfm/input_error.h"
+#include "sfm/transforms_json.h"
+
+namespace nerf {
+
+namespace fs = std::filesystem;
+
+fs::path CheckpointPath(const fs::path& run) { return run / "checkpoint.nerf"; }
+fs::path PosesPath(const fs::path& run) { return run / "transforms.json"; }
+fs::path ConfigPath(const fs::path& run) { return run / "config.json"; }
+fs::path MetricsPath(const fs::path& run) { return run / "metrics.jsonl"; }
+fs::path ColmapPath(const fs::path& run) { return run / "colmap"; }
+
+Checkpoint ReadRunCheckpoint(const fs::path& run) {
+  if (!fs::exists(CheckpointPath(run))) {
+    throw sfm::InputError("{}: holds no checkpoint.nerf; train first: nerf train INPUT -o {}",
+                          run.string(), run.string());
+  }
+  return ReadCheckpoint(CheckpointPath(run));
+}
+
+OpenedRun OpenRun(const fs::path& run) {
+  const Checkpoint checkpoint = ReadRunCheckpoint(run);
+  return {ModelFromCheckpoint(checkpoint), sfm::ReadTransformsJson(PosesPath(run)),
+          checkpoint.meta.value("step", std::int64_t{0}),
+          checkpoint.meta.value("training_seconds", 0.0)};
+}
+
+}  // namespace nerf

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+
+#include "nerf/train/model.h"
+#include "sfm/posed_images.h"
+
+namespace nerf {
+
+// What a run folder holds.
+//   checkpoint.nerf  the model, and what training needs to go on
+//   transforms.json  poses in the input's frame and units, with the splits
+//   config.json      the configuration, every key
+//   metrics.jsonl    a line each validation
+//   colmap/          where poses were found from photographs
+std::filesystem::path CheckpointPath(const std::filesystem::path& run);
+std::filesystem::path PosesPath(const std::filesystem::path& run);
+std::filesystem::path ConfigPath(const std::filesystem::path& run);
+std::filesystem::path MetricsPath(const std::filesystem::path& run);
+std::filesystem::path ColmapPath(const std::filesystem::path& run);
+
+// A trained run, to be looked at.
+struct OpenedRun {
+  Model model;
+  sfm::PosedImages posed;
+  std::int64_t step = 0;
+  double training_seconds = 0;
+};
+
+// Throws sfm::InputError naming what is missing or damaged.
+OpenedRun OpenRun(const std::filesystem::path& run);
+
+// The checkpoint of a run. Throws sfm::InputError when there is none.
+Checkpoint ReadRunCheckpoint(const std::filesystem::path& run);
+
+}  // namespace nerf

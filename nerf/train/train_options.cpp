@@ -1,0 +1,73 @@
+#include "nerf/train/train_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sfm/input_error.h"
+
+namespace nerf {
+
+void LossOptions::Check() const {
+  if (kind != "huber" && kind != "mse") {
+    throw sfm::InputError("config: loss.kind is \"{}\"; use \"huber\" or \"mse\"", kind);
+  }
+  if (!(huber_delta > 0)) throw sfm::InputError("config: loss.huber_delta must be above 0");
+}
+
+void OptimizerOptions::Check() const {
+  if (!(learning_rate > 0 && std::isfinite(learning_rate))) {
+    throw sfm::InputError("config: optimizer.learning_rate is {}; use a value above 0",
+                          learning_rate);
+  }
+  if (!(beta1 >= 0 && beta1 < 1 && beta2 >= 0 && beta2 < 1)) {
+    throw sfm::InputError("config: optimizer.beta1 {} and beta2 {} must be in [0, 1)", beta1, beta2);
+  }
+  if (!(epsilon > 0)) throw sfm::InputError("config: optimizer.epsilon must be above 0");
+  if (!(weight_decay >= 0)) {
+    throw sfm::InputError("config: optimizer.weight_decay must not be negative");
+  }
+}
+
+void GradientScalingOptions::Check() const {
+  if (!(full_distance >= 0 && std::isfinite(full_distance))) {
+    throw sfm::InputError("config: gradient_scaling.full_distance is {}; use 0 or more",
+                          full_distance);
+  }
+}
+
+void ScheduleOptions::Check() const {
+  if (warmup_steps < 0) throw sfm::InputError("config: schedule.warmup_steps must not be negative");
+  if (!(final_factor > 0 && final_factor <= 1)) {
+    throw sfm::InputError("config: schedule.final_factor is {}; use a value above 0, at most 1",
+                          final_factor);
+  }
+}
+
+double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, std::int64_t steps) {
+  const double rise = schedule.warmup_steps > 0
+                          ? std::min(1.0, static_cast<double>(step + 1) / schedule.warmup_steps)
+                          : 1.0;
+  const double progress =
+      std::clamp(static_cast<double>(step) / static_cast<double>(std::max<std::int64_t>(1, steps)),
+                 0.0, 1.0);
+  const double fall = 0.5 * (1.0 + std::cos(std::numbers::pi * progress));
+  return rise * (schedule.final_factor + (1.0 - schedule.final_factor) * fall);
+}
+
+void TrainOptions::Check() const {
+  if (steps < 1) throw sfm::InputError("config: train.steps is {}; use 1 or more", steps);
+  if (samples_per_batch < 1 || samples_per_batch > (1 << 24)) {
+    throw sfm::InputError("config: train.samples_per_batch is {}; use 1 to {}", samples_per_batch,
+                          1 << 24);
+  }
+  if (max_rays_per_batch < 1 || max_rays_per_batch > (1 << 22)) {
+    throw sfm::InputError("config: train.max_rays_per_batch is {}; use 1 to {}", max_rays_per_batch,
+                          1 << 22);
+  }
+  if (checkpoint_every < 1 || validate_every < 1) {
+    throw sfm::InputError("config: train.checkpoint_every and validate_every must be at least 1");
+  }
+}
+
+}  // namespace nerf

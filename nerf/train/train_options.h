@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace nerf {
+
+struct LossOptions {
+  std::string kind = "huber";  // "huber" or "mse"
+  double huber_delta = 0.1;    // errors above this count linearly; same unit as colours
+
+  void Check() const;
+};
+
+struct OptimizerOptions {
+  double learning_rate = 1e-2;  // at its highest, see ScheduleOptions
+  double beta1 = 0.9;
+  double beta2 = 0.99;
+  double epsilon = 1e-15;
+  double weight_decay = 1e-6;   // of the networks' weights, not of the hash table
+
+  void Check() const;
+};
+
+// A photograph alone could be painted on a pane of glass right before its camera: samples near the
+// camera get gradients from many rays, those where the scene is from few. Scaling the gradients of a
+// sample at distance t by min(1, (t / full_distance)^2) undoes that.
+// Source: Philip and Deschaintre 2023, "Floaters No More".
+struct GradientScalingOptions {
+  double full_distance = 1.0;  // normalized scene units; 0: no scaling
+
+  void Check() const;
+};
+
+// The learning rate rises linearly, then falls along half a cosine to its final value.
+struct ScheduleOptions {
+  int warmup_steps = 50;       // steps of the rise
+  double final_factor = 0.01;  // last learning rate as a fraction of the highest
+
+  void Check() const;
+};
+double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, std::int64_t steps);
+
+struct TrainOptions {
+  std::int64_t steps = 5000;
+  std::int64_t samples_per_batch = 65536;   // samples with gradients that a step aims at
+  std::int64_t max_rays_per_batch = 8192;
+  std::uint64_t seed = 1;
+  std::int64_t checkpoint_every = 1000;     // steps
+  std::int64_t validate_every = 500;        // steps
+
+  void Check() const;
+};
+
+}  // namespace nerf

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+
+#include "nerf/data/dataset.h"
+#include "nerf/train/model.h"
+
+namespace nerf {
+
+struct TrainSummary {
+  bool finished = false;        // false: stopped on request, saved, to be resumed
+  std::int64_t step = 0;
+  double training_seconds = 0;  // without validation and saving
+  double validation_psnr = 0;   // dB, on a fixed sample of validation pixels; 0: none held out
+};
+
+// Trains a model: draws pixels, lets the engine take gradients, steps the optimiser, keeps the
+// occupancy grid fresh, validates, writes metrics.jsonl and checkpoints into the run folder.
+class Trainer {
+ public:
+  // A new run. `data` must outlive the trainer.
+  Trainer(const Config& config, const SceneFacts& scene, const Dataset& data,
+          const std::filesystem::path& run);
+  // A run as its checkpoint left it: goes on as if it had never stopped, bit for bit with the same
+  // number of threads.
+  Trainer(const Checkpoint& checkpoint, const Dataset& data, const std::filesystem::path& run);
+  ~Trainer();
+
+  // Trains until config.train.steps, or until `stop` is set: then saves and returns.
+  // Throws NonFiniteError naming the step, ray and stage; the last good checkpoint stays.
+  TrainSummary Run(const std::atomic<bool>& stop);
+
+  const Model& GetModel() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace nerf

@@ -1,0 +1,110 @@
+#include "sfm/colmap_images.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "sfm/input_error.h"
+#include "sfm/parallel_for.h"
+
+namespace sfm {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool ColmapReadsIt(const Photo& photo) {
+  const bool format_known =
+      photo.format == "jpeg" || photo.format == "png" || photo.format == "bmp";
+  return format_known && photo.eight_bit && photo.orientation == 1;
+}
+
+// Scales linear radiance, whatever its unit, to what a photograph shows of it.
+void ExposeAndEncode(OIIO::ImageBuf& linear) {
+  const OIIO::ImageSpec& spec = linear.spec();
+  std::vector<float> values(static_cast<std::size_t>(spec.width) * spec.height * spec.nchannels);
+  linear.get_pixels(linear.roi(), OIIO::TypeFloat, values.data());
+  for (float& value : values) value = std::isfinite(value) ? std::max(value, 0.0f) : 0.0f;
+  std::vector<float> sorted = values;
+  const auto percentile = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 99 / 100);
+  std::nth_element(sorted.begin(), percentile, sorted.end());
+  const float scale = *percentile > 0 ? 1 / *percentile : 1.0f;
+  for (float& value : values) {
+    const float x = std::min(value * scale, 1.0f);
+    value = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+  }
+  linear.set_pixels(linear.roi(), OIIO::TypeFloat, values.data());
+}
+
+void WriteStandIn(const Photo& photo, const fs::path& target) {
+  OIIO::ImageBuf source(photo.path.string());
+  if (!source.read(0, 0, true, OIIO::TypeFloat)) {
+    throw InputError("{}: {}", photo.path.string(), source.geterror());
+  }
+  const bool linear = source.nativespec().format.is_floating_point();
+  const std::vector<int> channels = source.nchannels() >= 3 ? std::vector{0, 1, 2} : std::vector{0};
+  OIIO::ImageBuf image =
+      OIIO::ImageBufAlgo::channels(source, static_cast<int>(channels.size()), channels);
+  if (linear) ExposeAndEncode(image);
+  if (photo.orientation != 1) image = OIIO::ImageBufAlgo::reorient(image);
+  image.specmod().attribute("CompressionQuality", 95);
+  image.specmod().attribute("oiio:ColorSpace", "sRGB");
+  image.set_write_format(OIIO::TypeUInt8);
+  if (image.has_error() || !image.write(target.string())) {
+    throw InputError("{}: cannot be written: {}", target.string(), image.geterror());
+  }
+}
+
+void LinkOrCopy(const Photo& photo, const fs::path& target) {
+  std::error_code error;
+  fs::create_symlink(photo.path, target, error);
+  if (error) fs::copy_file(photo.path, target, error);
+  if (error) throw InputError("{}: cannot be written: {}", target.string(), error.message());
+}
+
+}  // namespace
+
+std::vector<ColmapImage> PlanColmapImages(const std::vector<Photo>& photos) {
+  const auto size_of = [](const Photo& photo) {
+    return fmt::format("{}x{}", photo.UprightWidth(), photo.UprightHeight());
+  };
+  std::set<std::string> sizes;
+  std::set<std::string> taken;
+  for (const Photo& photo : photos) {
+    sizes.insert(size_of(photo));
+    taken.insert(photo.name);
+  }
+  std::vector<ColmapImage> plan;
+  for (int i = 0; i < static_cast<int>(photos.size()); ++i) {
+    const Photo& photo = photos[i];
+    ColmapImage image{i, photo.name, !ColmapReadsIt(photo)};
+    // JPEG and PNG keep their name and kind; whatever else becomes a PNG.
+    const bool keeps_name = photo.eight_bit && (photo.format == "jpeg" || photo.format == "png");
+    if (image.stand_in && !keeps_name) {
+      do image.name += ".png";
+      while (!taken.insert(image.name).second);
+    }
+    if (sizes.size() > 1) image.name = size_of(photo) + "/" + image.name;
+    plan.push_back(std::move(image));
+  }
+  return plan;
+}
+
+void WriteColmapImages(const std::vector<Photo>& photos, const std::vector<ColmapImage>& plan,
+                       const fs::path& image_folder, int threads) {
+  std::error_code error;
+  fs::create_directories(image_folder, error);
+  for (const ColmapImage& image : plan) {
+    if (!error) fs::create_directories((image_folder / image.name).parent_path(), error);
+  }
+  if (error) throw InputError("{}: cannot be made: {}", image_folder.string(), error.message());
+  ParallelFor(static_cast<int>(plan.size()), threads, [&](int i) {
+    const Photo& photo = photos[plan[i].photo];
+    const fs::path target = image_folder / plan[i].name;
+    plan[i].stand_in ? WriteStandIn(photo, target) : LinkOrCopy(photo, target);
+  });
+}
+
+}  // namespace sfm

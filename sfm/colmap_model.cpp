@@ -1,0 +1,265 @@
+#include "sfm/colmap_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "sfm/camera_intrinsics.h"
+#include "sfm/colmap_records.h"
+#include "sfm/image_files.h"
+#include "sfm/input_error.h"
+
+namespace fs = std::filesystem;
+
+namespace sfm {
+namespace {
+
+struct ModelFile {
+  fs::path path;
+  bool binary = false;
+};
+
+std::optional<ModelFile> FindFile(const fs::path& folder, const std::string& stem) {
+  std::error_code error;
+  for (const bool binary : {true, false}) {
+    fs::path path = folder / (stem + (binary ? ".bin" : ".txt"));
+    if (fs::is_regular_file(path, error)) return ModelFile{std::move(path), binary};
+  }
+  return std::nullopt;
+}
+
+ModelFile RequireFile(const fs::path& folder, const std::string& stem) {
+  if (auto file = FindFile(folder, stem)) return *file;
+  throw InputError("{}: not a COLMAP model: neither {}.bin nor {}.txt is there", folder.string(),
+                   stem, stem);
+}
+
+std::vector<colmap::ImageRecord> ReadImages(const ModelFile& file) {
+  return file.binary ? colmap::ReadImagesBinary(file.path) : colmap::ReadImagesText(file.path);
+}
+
+Eigen::Isometry3d WorldFromCamera(const colmap::ImageRecord& image, const std::string& where) {
+  const double norm = image.rotation.norm();
+  if (!std::isfinite(norm) || !image.translation.allFinite()) {
+    throw InputError("{}: the pose is not finite; remove the image from the model", where);
+  }
+  if (norm < 1e-12) {
+    throw InputError("{}: the rotation quaternion has length zero; remove the image from the model",
+                     where);
+  }
+  const Eigen::Vector4d q = image.rotation / norm;
+  Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
+  camera_from_world.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+  camera_from_world.translation() = image.translation;
+  return camera_from_world.inverse();
+}
+
+// Puts the records of a model together.
+class Assembler {
+ public:
+  Assembler(const fs::path& model_folder, const fs::path& image_folder)
+      : image_folder_(image_folder),
+        cameras_file_(RequireFile(model_folder, "cameras")),
+        images_file_(RequireFile(model_folder, "images")),
+        points_file_(FindFile(model_folder, "points3D")) {
+    result_.source = model_folder;
+  }
+
+  PosedImages Run() {
+    ReadFiles();  // all of them before the first image is opened: damage is found at once
+    AddImages();
+    AddPoints();
+    return std::move(result_);
+  }
+
+ private:
+  void ReadFiles() {
+    cameras_ = cameras_file_.binary ? colmap::ReadCamerasBinary(cameras_file_.path)
+                                    : colmap::ReadCamerasText(cameras_file_.path);
+    records_ = ReadImages(images_file_);
+    if (points_file_) {
+      point_records_ = points_file_->binary ? colmap::ReadPointsBinary(points_file_->path)
+                                            : colmap::ReadPointsText(points_file_->path);
+    }
+  }
+
+  void AddImages() {
+    if (records_.empty()) {
+      throw InputError("{}: no image is registered; run COLMAP again", images_file_.path.string());
+    }
+    std::sort(records_.begin(), records_.end(),
+              [](const auto& a, const auto& b) { return a.name < b.name; });
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+      const colmap::ImageRecord& record = records_[i];
+      if (i > 0 && record.name == records_[i - 1].name) {
+        throw InputError("{}: image '{}' is listed twice", images_file_.path.string(), record.name);
+      }
+      if (!record_of_id_.emplace(record.id, i).second) {
+        throw InputError("{}: image id {} is listed twice", images_file_.path.string(), record.id);
+      }
+      index_of_record_.push_back(AddImage(record));
+    }
+    if (result_.images.empty()) {
+      throw InputError(
+          "{}: none of its {} images is in {} (the first: '{}'); give the folder of photographs "
+          "that COLMAP saw",
+          images_file_.path.string(), records_.size(), image_folder_.string(), records_[0].name);
+    }
+  }
+
+  // Index of the image, or nullopt where its file is missing.
+  std::optional<int> AddImage(const colmap::ImageRecord& record) {
+    const std::string where =
+        fmt::format("{}: image '{}'", images_file_.path.string(), record.name);
+    PosedImage image;
+    image.name = record.name;
+    image.path = image_folder_ / record.name;
+    image.world_from_camera = WorldFromCamera(record, where);
+    const auto camera = cameras_.find(record.camera_id);
+    if (camera == cameras_.end()) {
+      throw InputError("{}: its camera {} is not in {}", where, record.camera_id,
+                       cameras_file_.path.string());
+    }
+    std::error_code error;
+    if (!fs::is_regular_file(image.path, error)) {
+      result_.missing.push_back(record.name);
+      return std::nullopt;
+    }
+    const auto stored = ReadImageSize(image.path);
+    if (!stored) {
+      result_.missing.push_back(record.name + " (not a readable image)");
+      return std::nullopt;
+    }
+    const auto upright = UprightByExif(camera->second, *stored);
+    if (!upright) {
+      throw InputError(
+          "{}: the file is {}x{} pixels, but its camera {} is {}x{}; give the folder with the "
+          "photographs at the size that COLMAP saw",
+          where, stored->width, stored->height, record.camera_id, camera->second.width,
+          camera->second.height);
+    }
+    image.upright_by_exif = *upright;
+    image.camera = CameraIndex(record.camera_id, camera->second);
+    result_.images.push_back(std::move(image));
+    return static_cast<int>(result_.images.size()) - 1;
+  }
+
+  int CameraIndex(std::uint32_t id, const Camera& camera) {
+    const auto [entry, is_new] =
+        index_of_camera_.emplace(id, static_cast<int>(result_.cameras.size()));
+    if (is_new) result_.cameras.push_back(camera);
+    return entry->second;
+  }
+
+  void AddPoints() {
+    result_.points.reserve(point_records_.size());
+    for (const colmap::PointRecord& record : point_records_) {
+      if (!record.x_in_world.allFinite() || !std::isfinite(record.reprojection_error)) {
+        throw InputError("{}: point {} is not finite", points_file_->path.string(), record.id);
+      }
+      SparsePoint& point = result_.points.emplace_back();
+      point.x_in_world = record.x_in_world;
+      point.rgb = record.rgb;
+      point.reprojection_error = record.reprojection_error;
+      for (const auto& [image_id, point2d] : record.track) {
+        AddSighting(record.id, image_id, point2d, &point.track);
+      }
+    }
+  }
+
+  void AddSighting(std::uint64_t point_id, std::uint32_t image_id, std::uint32_t point2d,
+                   std::vector<TrackElement>* track) {
+    const auto record = record_of_id_.find(image_id);
+    if (record == record_of_id_.end() || point2d >= records_[record->second].points2d.size()) {
+      throw InputError("{}: point {} was seen as number {} of image {}, which {} does not have",
+                       points_file_->path.string(), point_id, point2d, image_id,
+                       images_file_.path.string());
+    }
+    const auto image = index_of_record_[record->second];
+    if (!image) return;
+    const Eigen::Vector2d& pixel = records_[record->second].points2d[point2d];
+    if (!pixel.allFinite()) {
+      throw InputError("{}: image '{}': its 2D point {} is not finite", images_file_.path.string(),
+                       records_[record->second].name, point2d);
+    }
+    track->push_back({*image, pixel});
+  }
+
+  fs::path image_folder_;
+  ModelFile cameras_file_;
+  ModelFile images_file_;
+  std::optional<ModelFile> points_file_;
+  colmap::CameraMap cameras_;
+  std::vector<colmap::ImageRecord> records_;  // by name
+  std::vector<colmap::PointRecord> point_records_;
+  std::unordered_map<std::uint32_t, std::size_t> record_of_id_;
+  std::vector<std::optional<int>> index_of_record_;  // into result_.images
+  std::unordered_map<std::uint32_t, int> index_of_camera_;
+  PosedImages result_;
+};
+
+std::optional<int> SubModelNumber(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  const bool is_number = !name.empty() && name.size() <= 6 &&
+                         name.find_first_not_of("0123456789") == std::string::npos;
+  if (!is_number) return std::nullopt;
+  return std::stoi(name);
+}
+
+}  // namespace
+
+bool IsColmapModel(const fs::path& folder) {
+  return FindFile(folder, "cameras") && FindFile(folder, "images");
+}
+
+PosedImages ReadColmapModel(const fs::path& model_folder, const fs::path& image_folder) {
+  return Assembler(model_folder, image_folder).Run();
+}
+
+std::vector<std::string> ColmapImageNames(const fs::path& model_folder) {
+  std::vector<std::string> names;
+  for (auto& image : ReadImages(RequireFile(model_folder, "images"))) {
+    names.push_back(std::move(image.name));
+  }
+  return names;
+}
+
+int CountRegistered(const fs::path& model_folder) {
+  const ModelFile file = RequireFile(model_folder, "images");
+  return file.binary ? colmap::CountImagesBinary(file.path) : colmap::CountImagesText(file.path);
+}
+
+std::vector<fs::path> SubModels(const fs::path& sparse_folder) {
+  std::map<int, fs::path> by_number;
+  std::error_code error;
+  for (fs::directory_iterator it(sparse_folder, error), end; !error && it != end;
+       it.increment(error)) {
+    const auto number = SubModelNumber(it->path());
+    if (number && IsColmapModel(it->path())) by_number.emplace(*number, it->path());
+  }
+  std::vector<fs::path> folders;
+  for (auto& [number, folder] : by_number) folders.push_back(std::move(folder));
+  return folders;
+}
+
+fs::path LargestModel(const fs::path& sparse_folder) {
+  fs::path largest;
+  int most = -1;
+  for (const fs::path& folder : SubModels(sparse_folder)) {
+    const int registered = CountRegistered(folder);
+    if (registered > most) {
+      most = registered;
+      largest = folder;
+    }
+  }
+  if (most < 0) {
+    throw InputError("{}: holds no COLMAP model in a folder 0, 1, ...; run COLMAP again",
+                     sparse_folder.string());
+  }
+  return largest;
+}
+
+}  // namespace sfm

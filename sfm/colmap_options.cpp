@@ -1,0 +1,28 @@
+#include "sfm/colmap_options.h"
+
+#include "sfm/camera_models.h"
+#include "sfm/input_error.h"
+
+namespace sfm {
+
+void ColmapOptions::Check() const {
+  if (matcher != "auto" && matcher != "exhaustive" && matcher != "sequential") {
+    throw InputError("matcher: '{}' is unknown; it is auto, exhaustive or sequential", matcher);
+  }
+  if (!CameraModelFromName(camera_model)) {
+    throw InputError(
+        "camera model: '{}' is unknown; OPENCV suits most lenses, OPENCV_FISHEYE wide "
+        "ones, and COLMAP's other names are known too",
+        camera_model);
+  }
+  if (max_image_size < 200) {
+    throw InputError("max image size: {} is too small for features; give 200 pixels or more",
+                     max_image_size);
+  }
+  if (max_num_features < 200) {
+    throw InputError("max features: {} is too few to match; give 200 or more", max_num_features);
+  }
+  if (threads < 0) throw InputError("threads: {}; give 1 or more, or 0 for all cores", threads);
+}
+
+}  // namespace sfm

@@ -1,0 +1,164 @@
+#include "sfm/colmap_program.h"
+
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+#include <sys/wait.h>
+
+#include <boost/process.hpp>
+#include <boost/process/extend.hpp>
+#include <csignal>
+#include <fstream>
+#include <optional>
+#include <regex>
+
+#include "sfm/input_error.h"
+
+namespace sfm {
+namespace {
+
+namespace bp = boost::process;
+
+bp::child Start(const std::filesystem::path& executable, std::vector<std::string> arguments,
+                bp::ipstream& output) {
+  bp::environment environment = boost::this_process::environment();
+  environment["QT_QPA_PLATFORM"] = "offscreen";
+  try {
+    return bp::child(bp::exe = executable.string(), bp::args = std::move(arguments), environment,
+                     (bp::std_out & bp::std_err) > output, bp::std_in < bp::null,
+                     bp::extend::on_exec_setup([](auto&) {
+#ifdef __linux__
+                       prctl(PR_SET_PDEATHSIG, SIGTERM);
+#endif
+                     }));
+  } catch (const bp::process_error& e) {
+    throw InputError("{}: cannot be started: {}", executable.string(), e.what());
+  }
+}
+
+// Remembers the line that explains a failure: the last that calls itself an error, else the last
+// that says anything; a stack trace explains nothing.
+class LastWords {
+ public:
+  void Hear(const std::string& line) {
+    constexpr std::size_t kLongest = 300;
+    const std::size_t begin = line.find_first_not_of(" \t\r=-*");
+    if (begin == std::string::npos || line[begin] == '@' || line.find("stack trace") != line.npos) {
+      return;
+    }
+    const std::string words = line.substr(begin, kLongest);
+    last_ = words;
+    static const std::regex error("error|check failed|what\\(\\):|not enough|no good",
+                                  std::regex::icase);
+    if (std::regex_search(words, error)) last_error_ = words;
+  }
+  std::string Line() const { return last_error_.empty() ? last_ : last_error_; }
+
+ private:
+  std::string last_;
+  std::string last_error_;
+};
+
+}  // namespace
+
+ColmapProgram ColmapProgram::Find() {
+  const boost::filesystem::path found = bp::search_path("colmap");
+  if (found.empty()) {
+    throw InputError(
+        "COLMAP is not installed: apt install colmap (Debian, Ubuntu; elsewhere see "
+        "colmap.github.io/install.html), or give poses: a transforms.json or a COLMAP project");
+  }
+  return ColmapProgram(found.string());
+}
+
+std::string ColmapProgram::KnownOption(const std::string& command,
+                                       std::initializer_list<const char*> names) {
+  const auto [known, is_new] = options_.try_emplace(command);
+  if (is_new) {
+    bp::ipstream output;
+    bp::child child = Start(executable_, {command, "-h"}, output);
+    static const std::regex option("--([A-Za-z_.0-9]+)");
+    for (std::string line; std::getline(output, line);) {
+      std::smatch match;
+      if (std::regex_search(line, match, option)) known->second.insert(match[1]);
+    }
+    child.wait();
+  }
+  for (const char* name : names) {
+    if (known->second.contains(name)) return name;
+  }
+  return {};
+}
+
+ColmapProgram::Outcome ColmapProgram::Run(
+    const std::string& command, const std::vector<std::string>& arguments,
+    const std::filesystem::path& log_file,
+    const std::function<void(std::string_view)>& on_line) const {
+  std::ofstream log(log_file);
+  log << executable_.string() << ' ' << command;
+  for (const std::string& argument : arguments) log << ' ' << argument;
+  log << std::endl;
+  const auto check_log = [&] {
+    if (!log) throw InputError("{}: cannot be written; is the disk full?", log_file.string());
+  };
+  check_log();
+
+  std::vector<std::string> all = {command};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  bp::ipstream output;
+  bp::child child = Start(executable_, std::move(all), output);
+  LastWords words;
+  try {
+    for (std::string line; std::getline(output, line);) {
+      log << line << std::endl;
+      check_log();
+      words.Hear(line);
+      on_line(line);
+    }
+  } catch (...) {
+    // Not child.terminate(), which leaves a zombie behind.
+    kill(child.id(), SIGKILL);
+    std::error_code ignored;
+    child.wait(ignored);
+    throw;
+  }
+  child.wait();
+  const int status = child.native_exit_code();
+  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGINT || WTERMSIG(status) == SIGTERM)) {
+    throw InputError("colmap {} was interrupted; run the same command again to go on from there",
+                     command);
+  }
+  if (WIFSIGNALED(status)) {
+    throw InputError(
+        "colmap {} was ended by signal {}{}; its last words: {}; log: {}", command,
+        WTERMSIG(status),
+        WTERMSIG(status) == SIGKILL ? " (out of memory? try --max-image-size 1000)" : "",
+        words.Line(), log_file.string());
+  }
+  return {child.exit_code(), words.Line()};
+}
+
+void ThrowStepFailed(const std::string& command, const ColmapProgram::Outcome& outcome,
+                     const std::filesystem::path& log_file) {
+  throw InputError("colmap {} failed (exit status {}): {}; see {}", command, outcome.exit_code,
+                   outcome.last_line.empty() ? "it said nothing" : outcome.last_line,
+                   log_file.string());
+}
+
+StepProgress ParseProgress(std::string_view line) {
+  static const std::regex file(R"((?:Processed file|Matching image) \[(\d{1,9})/(\d{1,9})\])");
+  static const std::regex block(R"(Matching block \[(\d{1,4})/(\d{1,4}), (\d{1,4})/(\d{1,4})\])");
+  static const std::regex registering(R"(Registering image #\d+ \((\d{1,9})\))");
+  std::cmatch match;
+  const auto number = [&match](int group) { return std::stoi(match[group].str()); };
+  const char* begin = line.data();
+  const char* end = begin + line.size();
+  if (std::regex_search(begin, end, match, file)) return {number(1), number(2)};
+  if (std::regex_search(begin, end, match, block)) {
+    return {(number(1) - 1) * number(4) + number(3), number(2) * number(4)};
+  }
+  if (std::regex_search(begin, end, match, registering)) return {number(1), 0};
+  return {};
+}
+
+}  // namespace sfm

@@ -1,0 +1,126 @@
+#include "sfm/colmap_runner.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <map>
+#include <regex>
+
+#include "sfm/colmap_images.h"
+#include "sfm/colmap_steps.h"
+#include "sfm/input_error.h"
+
+namespace sfm {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSequenceMin = 100;     // "auto": fewer than this are matched exhaustively
+constexpr int kSequenceOverlap = 20;  // neighbours
+constexpr int kFewestRegistered = 4;
+constexpr double kFewestFraction = 0.1;
+constexpr double kWarnFraction = 0.9;
+
+const char* const kAdvice =
+    "take more photographs that overlap (each part of the scene in five or more), sharp, of things "
+    "with texture, with one lens and exposure";
+
+std::string Listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
+  return text;
+}
+
+}  // namespace
+
+bool IsNumberedSequence(const std::vector<std::string>& names) {
+  if (names.empty()) return false;
+  static const std::regex numbered(R"(^(.*?)(\d{1,12})(\D*)$)");
+  std::smatch first, match;
+  if (!std::regex_match(names.front(), first, numbered)) return false;
+  std::int64_t lowest = 0, highest = 0;
+  for (const std::string& name : names) {
+    if (!std::regex_match(name, match, numbered) || match[1] != first[1] || match[3] != first[3] ||
+        match[2].length() != first[2].length()) {
+      return false;
+    }
+    const std::int64_t number = std::stoll(match[2]);
+    if (&name == &names.front()) lowest = number;
+    highest = number;
+  }
+  return highest - lowest < 2 * static_cast<std::int64_t>(names.size());
+}
+
+PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& workspace,
+                            const ColmapOptions& options, ColmapReport* report) {
+  options.Check();
+  const std::vector<fs::path> files = ListPhotos(photo_folder);
+  ColmapReport ignored;
+  ColmapReport& r = report != nullptr ? *report : ignored;
+
+  PhotoFolder folder = CheckPhotos(files, options.threads);
+  r.photos = static_cast<int>(folder.photos.size());
+  r.skipped = folder.skipped;
+  for (const SkippedPhoto& skipped : r.skipped) {
+    spdlog::warn("{}: skipped: {}", skipped.name, skipped.reason);
+  }
+  const std::vector<ColmapImage> plan = PlanColmapImages(folder.photos);
+  std::vector<std::string> names;
+  for (const Photo& photo : folder.photos) names.push_back(photo.name);
+  const bool one_size = plan.front().name.find('/') == std::string::npos;
+  const bool sequential =
+      options.matcher == "sequential" || (options.matcher == "auto" && one_size &&
+                                          r.photos > kSequenceMin && IsNumberedSequence(names));
+
+  ColmapSteps steps(workspace, options, r.photos);
+  steps.PrepareImages(files, folder.photos, plan);
+  steps.ExtractFeatures();
+  steps.Match(sequential);
+  steps.Map();
+  if (2 * steps.Registered() < r.photos) {
+    spdlog::info("{} of {} registered; the mapper tries again with lower thresholds",
+                 steps.Registered(), r.photos);
+    steps.MapRelaxed();
+  }
+  r.seconds = steps.Seconds();
+  r.registered = steps.Registered();
+  if (r.registered < kFewestRegistered || r.registered < kFewestFraction * r.photos) {
+    throw InputError("{}: COLMAP registered {} of {} photographs, too few to go on: {}{}; see {}",
+                     photo_folder.string(), r.registered, r.photos, kAdvice,
+                     sequential ? "; or try --matcher exhaustive" : "",
+                     steps.LogFile("mapper").string());
+  }
+
+  PosedImages result = steps.ReadModel();
+  std::map<std::string, const Photo*> photo_of;
+  for (const ColmapImage& image : plan) photo_of[image.name] = &folder.photos[image.photo];
+  for (PosedImage& image : result.images) {
+    const auto found = photo_of.find(image.name);
+    if (found == photo_of.end()) {
+      throw InputError("{}: names {}, which is none of the photographs; remove {} and start again",
+                       result.source.string(), image.name, workspace.string());
+    }
+    const Photo& photo = *found->second;
+    image.name = photo.name;
+    image.path = photo.path;
+    image.upright_by_exif = photo.orientation != 1;
+    photo_of.erase(found);
+  }
+  for (const auto& [name, photo] : photo_of) r.unregistered.push_back(photo->name);
+  std::sort(r.unregistered.begin(), r.unregistered.end());
+  r.points = static_cast<int>(result.points.size());
+  for (const SparsePoint& point : result.points) {
+    r.mean_reprojection_error += point.reprojection_error / static_cast<double>(r.points);
+  }
+  if (r.registered < kWarnFraction * r.photos) {
+    spdlog::warn("COLMAP registered {} of {} photographs, not {}: {}", r.registered, r.photos,
+                 Listed(r.unregistered), kAdvice);
+  }
+  return result;
+}
+
+}  // namespace sfm

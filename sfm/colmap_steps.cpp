@@ -1,0 +1,228 @@
+#include "sfm/colmap_steps.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "sfm/atomic_file.h"
+#include "sfm/colmap_model.h"
+#include "sfm/input_error.h"
+#include "sfm/progress.h"
+
+namespace sfm {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kSequenceOverlap = 20;  // neighbours
+
+// For photographs in which the mapper finds no start with its defaults (100, 16, 30, 15).
+const std::vector<std::string> kRelaxedMapping = {
+    "--Mapper.init_min_num_inliers",     "50", "--Mapper.init_min_tri_angle", "8",
+    "--Mapper.abs_pose_min_num_inliers", "15", "--Mapper.min_num_matches",    "10"};
+
+void RemoveAll(const fs::path& path) {
+  std::error_code error;
+  fs::remove_all(path, error);
+  if (error) throw InputError("{}: cannot be removed: {}", path.string(), error.message());
+}
+
+// What follows clears old results away, so nothing here may be anyone else's.
+fs::path OpenWorkspace(fs::path workspace) {
+  workspace = fs::absolute(workspace).lexically_normal();
+  MakeOutputFolder(workspace);
+  if (!fs::exists(workspace / "steps.json") && !fs::is_empty(workspace)) {
+    throw InputError("{}: holds files that are not of an earlier run; give another output folder",
+                     workspace.string());
+  }
+  MakeOutputFolder(workspace / "log");
+  return workspace;
+}
+
+// Where the mapper puts its models: PARENT/0, PARENT/1, ...
+std::vector<fs::path> ModelsIn(const fs::path& parent) {
+  std::vector<fs::path> models;
+  std::error_code error;
+  for (fs::directory_iterator it(parent, error), end; !error && it != end; it.increment(error)) {
+    if (IsColmapModel(it->path())) models.push_back(it->path());
+  }
+  return models;
+}
+
+json FilesAsInputs(const std::vector<fs::path>& files) {
+  json list = json::array();
+  for (const fs::path& file : files) {
+    std::error_code error;
+    const auto changed = fs::last_write_time(file, error).time_since_epoch().count();
+    list.push_back({file.string(), fs::file_size(file, error), changed});
+  }
+  return list;
+}
+
+}  // namespace
+
+ColmapSteps::ColmapSteps(fs::path workspace, const ColmapOptions& options, int photos)
+    : workspace_(OpenWorkspace(std::move(workspace))),
+      options_(options),
+      photos_(photos),
+      colmap_(ColmapProgram::Find()),
+      ledger_(workspace_ / "steps.json") {}
+
+void ColmapSteps::PrepareImages(const std::vector<fs::path>& files,
+                                const std::vector<Photo>& photos,
+                                const std::vector<ColmapImage>& plan) {
+  Step("images", FilesAsInputs(files), Images(), [&](StepLedger::State) {
+    RemoveAll(Images());
+    WriteColmapImages(photos, plan, Images(), options_.threads);
+  });
+}
+
+void ColmapSteps::ExtractFeatures() {
+  const json inputs = {options_.camera_model, options_.max_image_size, options_.max_num_features};
+  Step("features", inputs, Database(), [&](StepLedger::State) {
+    // Always from the start: COLMAP would give the photographs that an interrupted run left over
+    // a camera of their own.
+    for (const char* suffix : {"", "-shm", "-wal", "-journal"}) {
+      RemoveAll(Database().string() + suffix);
+    }
+    Arguments arguments = {"--database_path",
+                           Database().string(),
+                           "--image_path",
+                           Images().string(),
+                           "--ImageReader.single_camera_per_folder",
+                           "1",
+                           "--ImageReader.camera_model",
+                           options_.camera_model};
+    const std::string command = "feature_extractor";
+    AddKnown(command, {"SiftExtraction.use_gpu", "FeatureExtraction.use_gpu"}, 0, arguments);
+    AddKnown(command, {"SiftExtraction.max_image_size", "FeatureExtraction.max_image_size"},
+             options_.max_image_size, arguments);
+    AddKnown(command, {"SiftExtraction.max_num_features"}, options_.max_num_features, arguments);
+    AddThreads(command, {"SiftExtraction.num_threads", "FeatureExtraction.num_threads"}, arguments);
+    RunOrThrow("features", command, arguments);
+  });
+}
+
+void ColmapSteps::Match(bool sequential) {
+  Step(
+      "matches", {sequential ? "sequential" : "exhaustive"}, Database(),
+      [&](StepLedger::State state) {
+        // Pairs that are matched already are skipped by COLMAP itself.
+        if (state == StepLedger::State::kChanged) {
+          RunOrThrow("clean", "database_cleaner",
+                     {"--database_path", Database().string(), "--type", "matches"});
+        }
+        const std::string command = sequential ? "sequential_matcher" : "exhaustive_matcher";
+        Arguments arguments = {"--database_path", Database().string()};
+        AddKnown(command, {"SiftMatching.use_gpu", "FeatureMatching.use_gpu"}, 0, arguments);
+        AddThreads(command, {"SiftMatching.num_threads", "FeatureMatching.num_threads"}, arguments);
+        if (sequential) {
+          AddKnown(command, {"SequentialMatching.overlap"}, kSequenceOverlap, arguments);
+          AddKnown(command, {"SequentialMatching.quadratic_overlap"}, 1, arguments);
+        } else {
+          // COLMAP reports block by block: about 64 signs of progress, whatever the number.
+          AddKnown(command, {"ExhaustiveMatching.block_size"}, std::clamp(photos_ / 8, 8, 50),
+                   arguments);
+        }
+        RunOrThrow("matches", command, arguments);
+      });
+}
+
+void ColmapSteps::Map() {
+  Step("mapper", json::object(), Sparse(), [&](StepLedger::State) {
+    RemoveAll(Sparse());
+    RunMapper("mapper", Sparse(), {});
+  });
+}
+
+void ColmapSteps::MapRelaxed() {
+  Step("mapper_relaxed", json::object(), Sparse(), [&](StepLedger::State) {
+    const fs::path attempt = workspace_ / "sparse_relaxed";
+    RemoveAll(attempt);
+    RunMapper("mapper_relaxed", attempt, kRelaxedMapping);
+    int number = 0;
+    for (const fs::path& model : ModelsIn(attempt)) {
+      while (fs::exists(Sparse() / std::to_string(number))) ++number;
+      fs::rename(model, Sparse() / std::to_string(number));
+    }
+    RemoveAll(attempt);
+  });
+}
+
+int ColmapSteps::Registered() const {
+  return ModelsIn(Sparse()).empty() ? 0 : CountRegistered(LargestModel(Sparse()));
+}
+
+PosedImages ColmapSteps::ReadModel() const {
+  return ReadColmapModel(LargestModel(Sparse()), Images());
+}
+
+fs::path ColmapSteps::LogFile(const std::string& step) const {
+  return workspace_ / "log" / (step + ".log");
+}
+void ColmapSteps::Step(const std::string& name, const json& inputs, const fs::path& result,
+                       const std::function<void(StepLedger::State)>& work) {
+  const StepLedger::State state = ledger_.StateOf(name, inputs);
+  if (state == StepLedger::State::kDone && fs::exists(result)) {
+    spdlog::info("{}: done before, skipped", name);
+  } else {
+    spdlog::info("{}: of {} photographs ...", name, photos_);
+    ledger_.Begin(name, inputs);
+    const auto begin = std::chrono::steady_clock::now();
+    work(state);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    ledger_.Finish(name, elapsed.count());
+  }
+  seconds_.emplace_back(name, ledger_.Seconds(name));
+}
+
+void ColmapSteps::AddKnown(const std::string& command, std::initializer_list<const char*> names,
+                           int value, Arguments& arguments) {
+  const std::string option = colmap_.KnownOption(command, names);
+  if (option.empty()) return;
+  arguments.push_back("--" + option);
+  arguments.push_back(std::to_string(value));
+}
+
+void ColmapSteps::AddThreads(const std::string& command, std::initializer_list<const char*> names,
+                             Arguments& arguments) {
+  if (options_.threads > 0) AddKnown(command, names, options_.threads, arguments);
+}
+
+ColmapProgram::Outcome ColmapSteps::Run(const std::string& step, const std::string& command,
+                                        const Arguments& arguments) const {
+  ProgressLine line(step, photos_);
+  int total = photos_;
+  return colmap_.Run(command, arguments, LogFile(step), [&](std::string_view said) {
+    const StepProgress progress = ParseProgress(said);
+    if (progress.done == 0) return;
+    if (progress.total > 0) total = progress.total;
+    line.Update(static_cast<std::int64_t>(progress.done) * photos_ / total);
+  });
+}
+
+void ColmapSteps::RunOrThrow(const std::string& step, const std::string& command,
+                             const Arguments& arguments) const {
+  const ColmapProgram::Outcome outcome = Run(step, command, arguments);
+  if (outcome.exit_code != 0) ThrowStepFailed(command, outcome, LogFile(step));
+}
+
+// No model is no failure here: what to do then is decided by the number registered.
+void ColmapSteps::RunMapper(const std::string& step, const fs::path& target,
+                            const Arguments& thresholds) {
+  MakeOutputFolder(target);
+  Arguments arguments = {"--database_path", Database().string(), "--image_path",
+                         Images().string(), "--output_path",     target.string()};
+  arguments.insert(arguments.end(), thresholds.begin(), thresholds.end());
+  AddThreads("mapper", {"Mapper.num_threads"}, arguments);
+  const ColmapProgram::Outcome outcome = Run(step, "mapper", arguments);
+  const bool found_nothing =
+      outcome.last_line.find("failed to create") != std::string::npos ||
+      outcome.last_line.find("No good initial image pair") != std::string::npos;
+  if (outcome.exit_code != 0 && !found_nothing) ThrowStepFailed("mapper", outcome, LogFile(step));
+}
+
+}  // namespace sfm

@@ -1,0 +1,121 @@
+#include "sfm/pose_input.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sfm/colmap_model.h"
+#include "sfm/image_files.h"
+#include "sfm/input_error.h"
+#include "sfm/llff.h"
+#include "sfm/transforms_json.h"
+
+namespace fs = std::filesystem;
+
+namespace sfm {
+namespace {
+
+bool IsFile(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+fs::path FolderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+std::optional<fs::path> FindColmapModel(const fs::path& input) {
+  for (const fs::path& folder : {input, input / "sparse", input / "colmap" / "sparse"}) {
+    if (IsColmapModel(folder)) return folder;
+    if (!SubModels(folder).empty()) return LargestModel(folder);
+  }
+  return std::nullopt;
+}
+
+// The folder that holds most of the photographs that a model names.
+fs::path FindColmapImages(const fs::path& input, const fs::path& model) {
+  const std::vector<std::string> names = ColmapImageNames(model);
+  std::vector<fs::path> folders = {input / "images", input};
+  // A model folder was given (project/sparse/0): its photographs lie beside or above it.
+  fs::path above = fs::absolute(input).lexically_normal();
+  if (!above.has_filename()) above = above.parent_path();
+  for (int level = 0; level < 2; ++level) {
+    above = above.parent_path();
+    folders.push_back(above / "images");
+    folders.push_back(above);
+  }
+  fs::path best;
+  std::size_t most = 0;
+  for (const fs::path& folder : folders) {
+    std::size_t found = 0;
+    for (const std::string& name : names) found += IsFile(folder / name) ? 1 : 0;
+    if (found > most) {
+      most = found;
+      best = folder;
+    }
+  }
+  if (most == 0) {
+    throw InputError(
+        "{}: none of the {} images of this COLMAP model is there (the first: '{}', looked for in "
+        "{}); put the photographs into {}",
+        model.string(), names.size(), names.empty() ? "" : names[0], folders[0].string(),
+        folders[0].string());
+  }
+  return best;
+}
+
+InputLocation FindInFolder(const fs::path& input) {
+  for (const char* name : {"transforms.json", "transforms_train.json"}) {
+    if (IsFile(input / name)) return {InputKind::kTransforms, input / name, input};
+  }
+  if (IsFile(input / "poses_bounds.npy")) {
+    return {InputKind::kLlff, input / "poses_bounds.npy", LlffImageFolder(input)};
+  }
+  if (const auto model = FindColmapModel(input)) {
+    return {InputKind::kColmap, *model, FindColmapImages(input, *model)};
+  }
+  for (const fs::path& folder : {input, input / "images"}) {
+    if (!ImageFilesIn(folder).empty()) return {InputKind::kPhotos, {}, folder};
+  }
+  throw InputError(
+      "{}: holds no photographs and no poses (looked for transforms.json, transforms_train.json, "
+      "poses_bounds.npy, a COLMAP model here, in sparse/ and colmap/sparse/, and image files here "
+      "and in images/)",
+      input.string());
+}
+
+}  // namespace
+
+InputLocation FindInput(const fs::path& input) {
+  std::error_code error;
+  const fs::file_status status = fs::status(input, error);
+  if (!fs::exists(status)) throw InputError("{}: no such file or folder", input.string());
+  if (fs::is_directory(status)) return FindInFolder(input);
+  if (input.extension() == ".json") {
+    return {InputKind::kTransforms, input, FolderOf(input)};
+  }
+  if (input.filename() == "poses_bounds.npy") {
+    return {InputKind::kLlff, input, LlffImageFolder(FolderOf(input))};
+  }
+  throw InputError(
+      "{}: not an input; give a folder of photographs, a COLMAP project, an LLFF folder, or a "
+      "transforms.json",
+      input.string());
+}
+
+PosedImages ReadPosedInput(const InputLocation& location) {
+  switch (location.kind) {
+    case InputKind::kTransforms:
+      return ReadTransformsJson(location.model);
+    case InputKind::kColmap:
+      return ReadColmapModel(location.model, location.images);
+    case InputKind::kLlff:
+      return ReadLlff(FolderOf(location.model));
+    case InputKind::kPhotos:
+      break;
+  }
+  throw InputError("{}: plain photographs have no poses yet; find them with COLMAP first",
+                   location.images.string());
+}
+
+}  // namespace sfm

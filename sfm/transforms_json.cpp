@@ -1,0 +1,196 @@
+#include "sfm/transforms_json.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "sfm/camera_intrinsics.h"
+#include "sfm/image_files.h"
+#include "sfm/input_error.h"
+#include "sfm/json_fields.h"
+#include "sfm/rigid_pose.h"
+#include "sfm/transforms_json_camera.h"
+
+namespace fs = std::filesystem;
+
+namespace sfm {
+namespace {
+
+// What nerfstudio calls the lists of its splits; an image in two belongs to the first.
+constexpr std::array<std::pair<const char*, Split>, 3> kSplitLists = {{
+    {"train_filenames", Split::kTrain},
+    {"test_filenames", Split::kTest},
+    {"val_filenames", Split::kValidation},
+}};
+
+// "./train/r_0" and "train/r_0" are the same image.
+std::string NameFromPath(const std::string& file_path) {
+  return fs::path(file_path).lexically_normal().generic_string();
+}
+
+// Blender's exporter leaves the ending out.
+std::optional<fs::path> FindImage(const fs::path& path) {
+  std::error_code error;
+  for (const char* ending : {"", ".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG"}) {
+    fs::path candidate = path;
+    candidate += ending;
+    if (fs::is_regular_file(candidate, error)) return candidate;
+  }
+  return std::nullopt;
+}
+
+Eigen::Isometry3d ReadPose(const JsonFields& frame) {
+  const std::string where = frame.Where("transform_matrix");
+  const nlohmann::json* rows = frame.Array("transform_matrix");
+  if (!rows) throw InputError("{} is missing", where);
+  const bool has_shape = rows->size() == 4 && std::all_of(rows->begin(), rows->end(), [](auto& r) {
+                           return r.is_array() && r.size() == 4;
+                         });
+  if (!has_shape) throw InputError("{} must be 4 lists of 4 numbers", where);
+  Eigen::Matrix4d matrix;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      const nlohmann::json& entry = (*rows)[row][column];
+      if (!entry.is_number()) {
+        throw InputError("{}[{}][{}] must be a finite number", where, row, column);
+      }
+      matrix(row, column) = entry.get<double>();
+    }
+  }
+  return WorldFromOpenCVCamera(RigidFromMatrix(matrix, where));
+}
+
+// Gathers the frames of one or several files.
+class Reader {
+ public:
+  void ReadFile(const fs::path& file, Split split) {
+    const nlohmann::json root = ReadJsonFile(file);
+    const JsonFields fields(root, file.string() + ": ");
+    const nlohmann::json* frames = fields.Array("frames");
+    if (!frames || frames->empty()) {
+      throw InputError("{} is missing or empty; is this a transforms.json?",
+                       fields.Where("frames"));
+    }
+    std::map<std::string, std::size_t> frame_of_name;
+    for (std::size_t i = 0; i < frames->size(); ++i) {
+      const JsonFields frame((*frames)[i], fmt::format("{}: frames[{}].", file.string(), i));
+      const auto file_path = frame.String("file_path");
+      if (!file_path || file_path->empty()) {
+        throw InputError("{} is missing", frame.Where("file_path"));
+      }
+      const std::string name = NameFromPath(*file_path);
+      const auto [earlier, is_new] = frame_of_name.emplace(name, i);
+      if (!is_new) {
+        throw InputError("{} '{}' is that of frames[{}] too; remove one of the two",
+                         frame.Where("file_path"), name, earlier->second);
+      }
+      AddFrame(file, frame, fields, name, split);
+    }
+    MarkSplits(fields);
+  }
+
+  PosedImages Result(const fs::path& file) && {
+    if (result_.images.empty()) {
+      throw InputError(
+          "{}: none of the {} images that it names is there (the first: '{}', looked for from {}); "
+          "put the photographs there or mend file_path",
+          file.string(), result_.missing.size(), result_.missing[0],
+          file.has_parent_path() ? file.parent_path().string() : ".");
+    }
+    std::sort(result_.images.begin(), result_.images.end(),
+              [](const PosedImage& a, const PosedImage& b) { return a.name < b.name; });
+    std::sort(result_.missing.begin(), result_.missing.end());
+    result_.source = file;
+    return std::move(result_);
+  }
+
+ private:
+  void AddFrame(const fs::path& file, const JsonFields& frame, const JsonFields& global,
+                const std::string& name, Split split) {
+    PosedImage image;
+    image.name = name;
+    image.split = split;
+    image.world_from_camera = ReadPose(frame);
+    // In an earlier file: train comes first, and what is trained on cannot be held out.
+    if (!names_.insert(name).second) return;
+    const auto path = FindImage(file.parent_path() / name);
+    const auto stored = path ? ReadImageSize(*path) : std::nullopt;
+    if (!stored) {
+      result_.missing.push_back(path ? name + " (not a readable image)" : name);
+      return;
+    }
+    image.path = *path;
+    const Camera camera = CameraFromJson(frame, global, *stored);
+    const auto fitted = FitToImage(camera, *stored);
+    if (!fitted) {
+      throw InputError(
+          "{}: the image '{}' is {}x{} pixels, which is no scaled copy of the {}x{} that w and h "
+          "say; mend w and h, or give the images that the file was made for",
+          frame.Where("file_path"), name, stored->width, stored->height, camera.width,
+          camera.height);
+    }
+    image.upright_by_exif = fitted->upright_by_exif;
+    image.camera = CameraIndex(fitted->camera);
+    result_.images.push_back(std::move(image));
+  }
+
+  int CameraIndex(const Camera& camera) {
+    const auto key = std::tuple(camera.model, camera.width, camera.height, camera.params);
+    const auto [entry, is_new] =
+        index_of_camera_.emplace(key, static_cast<int>(result_.cameras.size()));
+    if (is_new) result_.cameras.push_back(camera);
+    return entry->second;
+  }
+
+  void MarkSplits(const JsonFields& fields) {
+    std::map<std::string, Split> split_of_name;
+    for (const auto& [key, split] : kSplitLists) {
+      const nlohmann::json* list = fields.Array(key);
+      if (!list) continue;
+      for (const nlohmann::json& entry : *list) {
+        if (!entry.is_string()) throw InputError("{} must be a list of names", fields.Where(key));
+        const std::string name = NameFromPath(entry.get<std::string>());
+        if (!names_.contains(name)) {
+          throw InputError("{}: '{}' is the file_path of no frame", fields.Where(key), name);
+        }
+        split_of_name.emplace(name, split);
+      }
+    }
+    if (split_of_name.empty()) return;
+    for (PosedImage& image : result_.images) {
+      const auto found = split_of_name.find(image.name);
+      if (found != split_of_name.end()) image.split = found->second;
+    }
+  }
+
+  PosedImages result_;
+  std::set<std::string> names_;
+  std::map<std::tuple<CameraModel, int, int, std::vector<double>>, int> index_of_camera_;
+};
+
+}  // namespace
+
+PosedImages ReadTransformsJson(const fs::path& file) {
+  Reader reader;
+  if (file.filename() != "transforms_train.json") {
+    reader.ReadFile(file, Split::kUnspecified);
+    return std::move(reader).Result(file);
+  }
+  reader.ReadFile(file, Split::kTrain);
+  for (const auto& [name, split] : {std::pair{"transforms_test.json", Split::kTest},
+                                    std::pair{"transforms_val.json", Split::kValidation}}) {
+    std::error_code error;
+    const fs::path beside = file.parent_path() / name;
+    if (fs::exists(beside, error)) reader.ReadFile(beside, split);
+  }
+  return std::move(reader).Result(file);
+}
+
+}  // namespace sfm

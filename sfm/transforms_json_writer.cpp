@@ -1,0 +1,72 @@
+#include <nlohmann/json.hpp>
+
+#include "sfm/atomic_file.h"
+#include "sfm/input_error.h"
+#include "sfm/rigid_pose.h"
+#include "sfm/transforms_json.h"
+#include "sfm/transforms_json_camera.h"
+
+namespace fs = std::filesystem;
+
+namespace sfm {
+namespace {
+
+// Follows links of the folders, as ".." in the result would, but keeps the image's own name.
+std::string PathFrom(const fs::path& folder, const fs::path& image) {
+  std::error_code error;
+  const fs::path image_folder = fs::absolute(image).parent_path();
+  const fs::path relative = fs::relative(image_folder, folder, error);
+  if (error || relative.empty()) return fs::absolute(image).generic_string();
+  return (relative / image.filename()).lexically_normal().generic_string();
+}
+
+nlohmann::json JsonFromPose(const Eigen::Isometry3d& world_from_camera) {
+  const Eigen::Matrix4d matrix = WorldFromOpenGLCamera(world_from_camera).matrix();
+  nlohmann::json rows = nlohmann::json::array();
+  for (int i = 0; i < 4; ++i) {
+    rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});
+  }
+  return rows;
+}
+
+const char* SplitListName(Split split) {
+  switch (split) {
+    case Split::kTrain:
+      return "train_filenames";
+    case Split::kValidation:
+      return "val_filenames";
+    case Split::kTest:
+      return "test_filenames";
+    case Split::kUnspecified:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void WriteTransformsJson(const PosedImages& posed, const fs::path& file) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  const bool one_camera = posed.cameras.size() == 1;
+  nlohmann::json root = nlohmann::json::object();
+  if (one_camera) root = JsonFromCamera(posed.cameras[0]);
+  nlohmann::json& frames = root["frames"] = nlohmann::json::array();
+  nlohmann::json lists = nlohmann::json::object();
+  for (const PosedImage& image : posed.images) {
+    nlohmann::json frame = nlohmann::json::object();
+    if (!one_camera) frame = JsonFromCamera(posed.cameras[image.camera]);
+    frame["file_path"] = PathFrom(folder, image.path);
+    frame["transform_matrix"] = JsonFromPose(image.world_from_camera);
+    if (const char* list = SplitListName(image.split)) lists[list].push_back(frame["file_path"]);
+    frames.push_back(std::move(frame));
+  }
+  root.update(lists);
+  try {
+    WriteFileAtomically(file, root.dump(2) + "\n");
+  } catch (const nlohmann::json::exception&) {
+    throw InputError("{}: cannot be written: the path of an image is not UTF-8; rename it",
+                     file.string());
+  }
+}
+
+}  // namespace sfm

@@ -1,0 +1,93 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+
+#include "sfm/transforms_json.h"
+#include "tests/support/fake_colmap.h"
+#include "tests/support/photo_files.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+using test::FakeColmap;
+using test::ScratchFolder;
+using test::WritePhoto;
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct Said {
+  int status = -1;
+  std::string text;  // standard output and standard error
+};
+
+Said RunPoses(const std::string& arguments) {
+  Said said;
+  FILE* pipe = popen((std::string(NERF_PROGRAM) + " poses " + arguments + " 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe)) {
+    said.text.append(buffer.data(), count);
+  }
+  said.status = WEXITSTATUS(pclose(pipe));
+  return said;
+}
+
+class PosesCommand : public testing::Test {
+ protected:
+  PosesCommand() {
+    for (const char* name : {"a.png", "b.png", "c.png", "d.png", "e.png"}) {
+      WritePhoto(photos_.path() / name, 64, 48);
+    }
+  }
+  std::string Arguments() const { return photos_.path().string() + "/ -o " + out_.path().string(); }
+
+  FakeColmap fake_;
+  ScratchFolder photos_;
+  ScratchFolder out_;
+};
+
+TEST_F(PosesCommand, WritesPosesThatCanBeReadBackAndPrintsATable) {
+  photos_.Write("broken.png", "x");
+  fake_.Set("models", "0 4\n");
+  const Said said = RunPoses(Arguments());
+  EXPECT_EQ(said.status, 0) << said.text;
+  EXPECT_THAT(said.text, AllOf(HasSubstr("registered                4"), HasSubstr("e.png"),
+                               HasSubstr("broken.png"), HasSubstr("0.50 pixels"),
+                               HasSubstr("seconds, matches")));
+  const sfm::PosedImages posed = sfm::ReadTransformsJson(out_.path() / "transforms.json");
+  ASSERT_EQ(posed.images.size(), 4u);
+  EXPECT_TRUE(fs::equivalent(posed.images[0].path, photos_.path() / "a.png"));
+  EXPECT_NEAR((posed.images[1].world_from_camera.translation() + Eigen::Vector3d(2, 0, 0)).norm(),
+              0, 1e-12);
+  EXPECT_TRUE(fs::exists(out_.path() / "colmap/sparse/0/images.txt"));
+}
+
+TEST_F(PosesCommand, DoesNotOverwritePosesThatItDidNotMake) {
+  fake_.Set("models", "0 5\n");
+  out_.Write("transforms.json", "precious");
+  const Said said = RunPoses(Arguments());
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.text, HasSubstr("transforms.json: is there already"));
+  EXPECT_EQ(test::FileBytes(out_.path() / "transforms.json"), "precious");
+}
+
+TEST_F(PosesCommand, BadInputEndsWithStatus2AndOneLine) {
+  for (const std::string& arguments :
+       {std::string("/absent/folder"),
+        photos_.path().string() + " --matcher all -o " + out_.path().string()}) {
+    const Said said = RunPoses(arguments);
+    EXPECT_EQ(said.status, 2) << said.text;
+    EXPECT_EQ(std::count(said.text.begin(), said.text.end(), '\n'), 1) << said.text;
+  }
+}
+
+TEST_F(PosesCommand, TooFewRegisteredLeavesNoTransforms) {
+  EXPECT_EQ(RunPoses(Arguments()).status, 2);
+  EXPECT_FALSE(fs::exists(out_.path() / "transforms.json"));
+}
+
+}  // namespace
+}  // namespace nerf

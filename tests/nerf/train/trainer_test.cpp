@@ -1,0 +1,108 @@
+#include "nerf/train/trainer.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <thread>
+
+#include "nerf/data/image_metrics.h"
+#include "nerf/parallel.h"
+#include "nerf/render/image_renderer.h"
+#include "nerf/train/checkpoint.h"
+#include "nerf/train/engine.h"
+#include "nerf/train/run_folder.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/small_capture.h"
+
+namespace nerf {
+namespace {
+
+const std::atomic<bool> never_stop = false;
+
+void ExpectSameTensors(const Checkpoint& a, const Checkpoint& b) {
+  ASSERT_EQ(a.tensors.size(), b.tensors.size());
+  for (const auto& [name, tensor] : a.tensors) {
+    EXPECT_TRUE(torch::equal(tensor, b.tensors.at(name))) << name;
+  }
+}
+
+Config FewSteps(std::int64_t steps) {
+  Config config = test::SmallConfig();
+  config.train.steps = steps;
+  config.train.samples_per_batch = 2048;
+  config.train.checkpoint_every = 20;
+  return config;
+}
+
+TEST(Trainer, TheSameSeedAndThreadsGiveTheSameBits) {
+  const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
+  test::ScratchFolder a, b;
+  Trainer(FewSteps(40), small.scene, small.data, a.path()).Run(never_stop);
+  Trainer(FewSteps(40), small.scene, small.data, b.path()).Run(never_stop);
+  ExpectSameTensors(ReadRunCheckpoint(a.path()), ReadRunCheckpoint(b.path()));
+}
+
+TEST(Trainer, AResumedRunEqualsAnUnbrokenOneBitForBit) {
+  const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
+  test::ScratchFolder straight, broken;
+  Trainer(FewSteps(100), small.scene, small.data, straight.path()).Run(never_stop);
+
+  // Stopped by request some steps after its first checkpoint.
+  std::atomic<bool> stop = false;
+  std::thread watcher([&] {
+    while (!std::filesystem::exists(CheckpointPath(broken.path()))) std::this_thread::yield();
+    stop = true;
+  });
+  const TrainSummary stopped =
+      Trainer(FewSteps(100), small.scene, small.data, broken.path()).Run(stop);
+  watcher.join();
+  ASSERT_FALSE(stopped.finished);
+  ASSERT_GE(stopped.step, 20);
+
+  Trainer resumed(ReadRunCheckpoint(broken.path()), small.data, broken.path());
+  EXPECT_TRUE(resumed.Run(never_stop).finished);
+  ExpectSameTensors(ReadRunCheckpoint(straight.path()), ReadRunCheckpoint(broken.path()));
+}
+
+TEST(Trainer, LearnsAViewThatItNeverSaw) {
+  const test::SmallCapture small = test::MakeSmallCapture(24, 64, 48);
+  test::ScratchFolder run;
+  Trainer trainer(test::SmallConfig(), small.scene, small.data, run.path());
+  const TrainSummary summary = trainer.Run(never_stop);
+  EXPECT_TRUE(summary.finished);
+
+  const sfm::PosedImages& posed = small.capture.posed;
+  double psnr = 0;
+  int views = 0;
+  for (std::size_t i = 0; i < posed.images.size(); ++i) {
+    if (posed.images[i].split != sfm::Split::kTest) continue;
+    const RenderedView view = RenderView(
+        *trainer.GetModel().engine, posed.cameras[posed.images[i].camera],
+        small.scene.normalized_from_world.NormalizedFromCamera(posed.images[i].world_from_camera),
+        Eigen::Vector3f::Zero(), ColorEncoding::kSrgb);
+    psnr += Psnr(small.capture.views[i].photo, view.rgb);
+    ++views;
+  }
+  EXPECT_GT(psnr / views, 19.0);
+  RecordProperty("held_out_psnr", std::to_string(psnr / views));
+}
+
+TEST(Trainer, WritesALineOfMetricsAValidation) {
+  const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
+  test::ScratchFolder run;
+  Config config = FewSteps(30);
+  config.train.validate_every = 10;
+  Trainer(config, small.scene, small.data, run.path()).Run(never_stop);
+  std::ifstream file(MetricsPath(run.path()));
+  std::vector<int> steps;
+  for (std::string line; std::getline(file, line);) {
+    const auto json = nlohmann::json::parse(line);
+    steps.push_back(json.at("step"));
+    EXPECT_GT(json.at("rays_per_second"), 0);
+    EXPECT_GT(json.at("seconds"), 0);
+  }
+  EXPECT_EQ(steps, (std::vector<int>{10, 20, 30}));
+}
+
+}  // namespace
+}  // namespace nerf

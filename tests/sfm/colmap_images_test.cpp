@@ -1,0 +1,118 @@
+#include "sfm/colmap_images.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/input_error_of.h"
+#include "tests/support/photo_files.h"
+#include "tests/support/scratch_folder.h"
+
+namespace sfm {
+namespace {
+
+namespace fs = std::filesystem;
+using nerf::test::InputErrorOf;
+using nerf::test::ScratchFolder;
+using nerf::test::WritePhoto;
+using testing::ElementsAre;
+
+std::vector<std::string> Names(const std::vector<ColmapImage>& plan) {
+  std::vector<std::string> names;
+  for (const ColmapImage& image : plan) names.push_back(image.name);
+  return names;
+}
+
+class ColmapImages : public testing::Test {
+ protected:
+  std::vector<Photo> Photos() const { return CheckPhotos(ListPhotos(photos_.path())).photos; }
+  fs::path Target() const { return target_.path() / "images"; }
+
+  // Mean of the red channel over a part of an image, 0 to 255.
+  static float MeanRed(const fs::path& file, int x0, int x1, int y0, int y1) {
+    OIIO::ImageBuf image(file.string());
+    EXPECT_TRUE(image.read(0, 0, true, OIIO::TypeFloat)) << file;
+    float sum = 0;
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) sum += image.getchannel(x, y, 0, 0);
+    }
+    return 255 * sum / static_cast<float>((x1 - x0) * (y1 - y0));
+  }
+
+  ScratchFolder photos_;
+  ScratchFolder target_;
+};
+
+TEST_F(ColmapImages, PhotosThatColmapReadsAreLinked) {
+  WritePhoto(photos_.path() / "a.jpg", 32, 16);
+  WritePhoto(photos_.path() / "b.png", 32, 16, 1, OIIO::TypeUInt8, 4);
+  const auto photos = Photos();
+  const auto plan = PlanColmapImages(photos);
+  EXPECT_THAT(Names(plan), ElementsAre("a.jpg", "b.png"));
+  WriteColmapImages(photos, plan, Target());
+  EXPECT_TRUE(fs::is_symlink(Target() / "a.jpg"));
+  EXPECT_EQ(fs::read_symlink(Target() / "b.png"), photos[1].path);
+}
+
+TEST_F(ColmapImages, PhotosToBeTurnedGetAnUprightCopyAndStayAsTheyAre) {
+  // Stored with the bright half on the right; "turn by a quarter clockwise" brings it below.
+  WritePhoto(photos_.path() / "a.jpg", 32, 16, 6);
+  WritePhoto(photos_.path() / "b.jpg", 16, 32);
+  const auto photos = Photos();
+  const auto plan = PlanColmapImages(photos);
+  EXPECT_THAT(Names(plan), ElementsAre("a.jpg", "b.jpg"));  // of one size once upright
+  WriteColmapImages(photos, plan, Target());
+  EXPECT_FALSE(fs::is_symlink(Target() / "a.jpg"));
+  EXPECT_LT(MeanRed(Target() / "a.jpg", 0, 16, 0, 14), 60);
+  EXPECT_GT(MeanRed(Target() / "a.jpg", 0, 16, 18, 32), 200);
+  const auto written = CheckPhotos(ListPhotos(Target())).photos;
+  EXPECT_EQ(written[0].orientation, 1);
+  EXPECT_EQ(written[0].width, 16);
+  EXPECT_EQ(Photos()[0].orientation, 6);
+}
+
+TEST_F(ColmapImages, DeepAndFloatPhotosGetAnEightBitStandIn) {
+  WritePhoto(photos_.path() / "a.png", 32, 16, 1, OIIO::TypeUInt16);
+  WritePhoto(photos_.path() / "b.exr", 32, 16, 1, OIIO::TypeHalf);
+  const auto photos = Photos();
+  const auto plan = PlanColmapImages(photos);
+  EXPECT_THAT(Names(plan), ElementsAre("a.png.png", "b.exr.png"));
+  WriteColmapImages(photos, plan, Target());
+  for (const Photo& stand_in : CheckPhotos(ListPhotos(Target())).photos) {
+    EXPECT_TRUE(stand_in.eight_bit) << stand_in.name;
+    EXPECT_EQ(stand_in.width, 32);
+  }
+  EXPECT_NEAR(MeanRed(Target() / "a.png.png", 0, 16, 0, 16), 0.1 * 255, 1);
+  // Linear 0.1 and 0.9, scaled so that the brightest is white: sRGB of 1/9 and 1.
+  EXPECT_NEAR(MeanRed(Target() / "b.exr.png", 0, 16, 0, 16), 93.8, 1.5);
+  EXPECT_NEAR(MeanRed(Target() / "b.exr.png", 16, 32, 0, 16), 255, 1);
+}
+
+TEST_F(ColmapImages, EachOfSeveralSizesHasItsFolder) {
+  WritePhoto(photos_.path() / "a.jpg", 32, 16);
+  WritePhoto(photos_.path() / "b.jpg", 40, 16);
+  const auto photos = Photos();
+  const auto plan = PlanColmapImages(photos);
+  EXPECT_THAT(Names(plan), ElementsAre("32x16/a.jpg", "40x16/b.jpg"));
+  WriteColmapImages(photos, plan, Target());
+  EXPECT_TRUE(fs::exists(Target() / "40x16/b.jpg"));
+}
+
+TEST_F(ColmapImages, StandInDoesNotTakeAnotherPhotosName) {
+  WritePhoto(photos_.path() / "a.exr", 32, 16);
+  WritePhoto(photos_.path() / "a.exr.png", 32, 16);
+  EXPECT_THAT(Names(PlanColmapImages(Photos())), ElementsAre("a.exr.png.png", "a.exr.png"));
+}
+
+TEST_F(ColmapImages, UnwritableTargetIsNamed) {
+  WritePhoto(photos_.path() / "a.jpg", 32, 16);
+  WritePhoto(photos_.path() / "b.jpg", 32, 16);
+  const auto photos = Photos();
+  const fs::path file = target_.Write("in_the_way", "");
+  EXPECT_THAT(
+      InputErrorOf([&] { WriteColmapImages(photos, PlanColmapImages(photos), file / "images"); }),
+      testing::HasSubstr("in_the_way"));
+}
+
+}  // namespace
+}  // namespace sfm

@@ -1,0 +1,301 @@
+#include "sfm/colmap_model.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "tests/support/colmap_files.h"
+#include "tests/support/input_error_of.h"
+#include "tests/support/scratch_folder.h"
+
+namespace sfm {
+namespace {
+
+namespace fs = std::filesystem;
+using nerf::test::BinaryColmapFiles;
+using nerf::test::ColmapContents;
+using nerf::test::ColmapFiles;
+using nerf::test::InputErrorOf;
+using nerf::test::ScratchFolder;
+using nerf::test::SmallColmapContents;
+using nerf::test::TextColmapFiles;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// A model in sparse/ of a scratch folder, and its photographs in images/.
+class ColmapModel : public testing::Test {
+ protected:
+  void WriteFiles(const ColmapFiles& files, const std::string& ending,
+                  const std::string& folder = "sparse") {
+    scratch_.Write(folder + "/cameras" + ending, files.cameras);
+    scratch_.Write(folder + "/images" + ending, files.images);
+    scratch_.Write(folder + "/points3D" + ending, files.points);
+  }
+  void WriteBinary(const ColmapContents& contents, const std::string& folder = "sparse") {
+    WriteFiles(BinaryColmapFiles(contents), ".bin", folder);
+  }
+  void WriteImages() {
+    scratch_.WriteImage("images/a b.ppm", 6, 5);
+    scratch_.WriteImage("images/c.ppm", 12, 8);
+    scratch_.WriteImage("images/sub/b.ppm", 12, 8);
+  }
+  PosedImages Read() { return ReadColmapModel(Sparse(), scratch_.path() / "images"); }
+  std::string ReadError() {
+    return InputErrorOf([&] { Read(); });
+  }
+  fs::path Sparse() const { return scratch_.path() / "sparse"; }
+
+  ScratchFolder scratch_;
+};
+
+void ExpectSmallModel(const PosedImages& posed) {
+  ASSERT_EQ(posed.images.size(), 3u);
+  EXPECT_EQ(posed.images[0].name, "a b.ppm");
+  EXPECT_EQ(posed.images[1].name, "c.ppm");
+  EXPECT_EQ(posed.images[2].name, "sub/b.ppm");
+  ASSERT_EQ(posed.cameras.size(), 2u);
+  EXPECT_EQ(posed.cameras[posed.images[0].camera].model, CameraModel::kPinhole);
+  EXPECT_EQ(posed.cameras[posed.images[1].camera].params, (std::vector<double>{10, 6, 4, 0.1}));
+  EXPECT_EQ(posed.images[1].camera, posed.images[2].camera);
+  EXPECT_TRUE(posed.missing.empty());
+  // The file says camera from world: x_in_camera = x_in_world + (0, 0, 4).
+  EXPECT_TRUE(posed.images[0].world_from_camera.translation().isApprox(Eigen::Vector3d(0, 0, -4)));
+  // A quarter turn about z, then (1, 2, 3).
+  const Eigen::Vector3d x_in_camera =
+      posed.images[1].world_from_camera.inverse() * Eigen::Vector3d(1, 0, 0);
+  EXPECT_TRUE(x_in_camera.isApprox(Eigen::Vector3d(1, 3, 3), 1e-14));
+  // A quaternion of length 2 is the rotation of one of length 1.
+  EXPECT_TRUE(posed.images[2].world_from_camera.linear().isIdentity(1e-14));
+  ASSERT_EQ(posed.points.size(), 2u);
+  const SparsePoint& point = posed.points[0];
+  EXPECT_EQ(point.x_in_world, Eigen::Vector3d(1, 2, 3));
+  EXPECT_THAT(point.rgb, ElementsAre(10, 20, 30));
+  EXPECT_EQ(point.reprojection_error, 0.5);
+  ASSERT_EQ(point.track.size(), 3u);
+  EXPECT_EQ(point.track[0].image, 1);
+  EXPECT_EQ(point.track[0].pixel, Eigen::Vector2d(3, 4));
+  EXPECT_EQ(point.track[1].image, 0);
+  EXPECT_EQ(point.track[1].pixel, Eigen::Vector2d(0.25, 0.75));
+  EXPECT_EQ(point.track[2].image, 2);
+  EXPECT_EQ(point.track[2].pixel, Eigen::Vector2d(3, 2));
+}
+
+TEST_F(ColmapModel, BinaryAndTextSayTheSame) {
+  WriteImages();
+  WriteFiles(TextColmapFiles(SmallColmapContents()), ".txt");
+  ExpectSmallModel(Read());
+  EXPECT_EQ(CountRegistered(Sparse()), 3);
+  fs::remove_all(Sparse());
+  WriteBinary(SmallColmapContents());
+  ExpectSmallModel(Read());
+  EXPECT_EQ(CountRegistered(Sparse()), 3);
+  EXPECT_THAT(ColmapImageNames(Sparse()), ElementsAre("c.ppm", "a b.ppm", "sub/b.ppm"));
+}
+
+TEST_F(ColmapModel, BinaryIsPreferred) {
+  WriteImages();
+  WriteFiles({"nonsense", "nonsense", "nonsense"}, ".txt");
+  WriteBinary(SmallColmapContents());
+  ExpectSmallModel(Read());
+}
+
+TEST_F(ColmapModel, WindowsLineEndsAndImagesWithoutPointsAreRead) {
+  WriteImages();
+  WriteFiles({"3 SIMPLE_RADIAL 12 8 10 6 4 0.1\r\n",
+              "21 1 0 0 0 0 0 0 3 c.ppm\r\n\r\n22 1 0 0 0 1 0 0 3 sub/b.ppm\n\n", ""},
+             ".txt");
+  const PosedImages posed = Read();
+  ASSERT_EQ(posed.images.size(), 2u);
+  EXPECT_EQ(posed.images[1].name, "sub/b.ppm");
+}
+
+TEST_F(ColmapModel, EveryCameraModelComesBack) {
+  WriteImages();
+  for (int id = 0; id < kNumCameraModels; ++id) {
+    const CameraModel model = *CameraModelFromId(id);
+    Camera camera{model, 12, 8, {}};
+    for (int i = 0; i < CameraModelNumParams(model); ++i) camera.params.push_back(5 + 0.1 * i);
+    ColmapContents contents;
+    contents.cameras[1] = camera;
+    contents.images = {{1, {1, 0, 0, 0}, {0, 0, 0}, 1, "c.ppm", {}}};
+    for (const bool binary : {true, false}) {
+      fs::remove_all(Sparse());
+      WriteFiles(binary ? BinaryColmapFiles(contents) : TextColmapFiles(contents),
+                 binary ? ".bin" : ".txt");
+      EXPECT_THAT(Read().cameras, ElementsAre(camera)) << CameraModelName(model);
+    }
+  }
+}
+
+TEST_F(ColmapModel, MissingImagesAreNamedAndTheirSightingsDropped) {
+  WriteImages();
+  WriteBinary(SmallColmapContents());
+  fs::remove(scratch_.path() / "images/a b.ppm");
+  scratch_.Write("images/sub/b.ppm", "");
+  const PosedImages posed = Read();
+  ASSERT_EQ(posed.images.size(), 1u);
+  EXPECT_THAT(posed.missing, ElementsAre("a b.ppm", "sub/b.ppm (not a readable image)"));
+  EXPECT_EQ(posed.cameras.size(), 1u);
+  ASSERT_EQ(posed.points[0].track.size(), 1u);
+  EXPECT_EQ(posed.points[0].track[0].image, 0);
+  EXPECT_EQ(posed.points[0].track[0].pixel, Eigen::Vector2d(3, 4));
+  fs::remove_all(scratch_.path() / "images");
+  EXPECT_THAT(ReadError(), HasSubstr("none of its 3 images"));
+}
+
+TEST_F(ColmapModel, PointsMayBeAbsentButCamerasNot) {
+  WriteImages();
+  WriteBinary(SmallColmapContents());
+  fs::remove(Sparse() / "points3D.bin");
+  EXPECT_EQ(Read().images.size(), 3u);
+  EXPECT_TRUE(IsColmapModel(Sparse()));
+  fs::remove(Sparse() / "cameras.bin");
+  EXPECT_FALSE(IsColmapModel(Sparse()));
+  EXPECT_THAT(ReadError(), HasSubstr("neither cameras.bin nor cameras.txt"));
+}
+
+TEST_F(ColmapModel, BinaryCutAtAnyByteIsRefused) {
+  WriteImages();
+  const ColmapFiles whole = BinaryColmapFiles(SmallColmapContents());
+  for (const auto& [name, bytes] : {std::pair{"sparse/cameras.bin", whole.cameras},
+                                    std::pair{"sparse/images.bin", whole.images},
+                                    std::pair{"sparse/points3D.bin", whole.points}}) {
+    WriteFiles(whole, ".bin");
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+      scratch_.Write(name, bytes.substr(0, length));
+      ASSERT_THAT(ReadError(), HasSubstr("cut short or damaged")) << name << " " << length;
+    }
+    scratch_.Write(name, bytes + 'x');
+    EXPECT_THAT(ReadError(), HasSubstr("1 bytes follow the last record"));
+  }
+}
+
+TEST_F(ColmapModel, TextCutAtAnyByteNeverCrashes) {
+  WriteImages();
+  const ColmapFiles whole = TextColmapFiles(SmallColmapContents());
+  int refused = 0;
+  for (const auto& [name, bytes] : {std::pair{"sparse/cameras.txt", whole.cameras},
+                                    std::pair{"sparse/images.txt", whole.images},
+                                    std::pair{"sparse/points3D.txt", whole.points}}) {
+    WriteFiles(whole, ".txt");
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+      scratch_.Write(name, bytes.substr(0, length));
+      refused += ReadError() != "no error";
+    }
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST_F(ColmapModel, AbsurdCountsAskForNoMemory) {
+  WriteImages();
+  const ColmapFiles whole = BinaryColmapFiles(SmallColmapContents());
+  for (const char byte : {'\xff', '\x7f'}) {
+    for (const auto& [name, bytes] : {std::pair{"sparse/cameras.bin", whole.cameras},
+                                      std::pair{"sparse/images.bin", whole.images},
+                                      std::pair{"sparse/points3D.bin", whole.points}}) {
+      WriteFiles(whole, ".bin");
+      scratch_.Write(name, std::string(8, byte) + bytes.substr(8));
+      EXPECT_THAT(ReadError(), HasSubstr("cut short or damaged"));
+    }
+    scratch_.Write("sparse/images.bin", std::string(8, byte) + whole.images.substr(8));
+    EXPECT_THAT(InputErrorOf([&] { CountRegistered(Sparse()); }), HasSubstr("images.bin"));
+  }
+}
+
+TEST_F(ColmapModel, PosesThatAreNoneAreRefusedByImage) {
+  WriteImages();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  ColmapContents contents = SmallColmapContents();
+  contents.images[1].translation.y() = nan;
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("image 'a b.ppm': the pose is not finite"));
+  contents = SmallColmapContents();
+  contents.images[2].rotation.setZero();
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("image 'sub/b.ppm': the rotation quaternion"));
+  contents = SmallColmapContents();
+  contents.cameras[9].params[0] = nan;
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("cameras.bin: camera 9: a parameter is not finite"));
+  fs::remove_all(Sparse());
+  WriteFiles(TextColmapFiles(contents), ".txt");
+  EXPECT_THAT(ReadError(), HasSubstr("cameras.txt:3: camera 9: a parameter is not finite"));
+}
+
+TEST_F(ColmapModel, ContradictionsAreRefused) {
+  WriteImages();
+  ColmapContents contents = SmallColmapContents();
+  contents.images[0].camera_id = 4;
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("image 'c.ppm': its camera 4 is not in"));
+  contents = SmallColmapContents();
+  contents.points[1].track[0].second = 3;
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("point 7 was seen as number 3 of image 8"));
+  contents = SmallColmapContents();
+  contents.points[1].track[0].first = 1;
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("of image 1, which"));
+  contents = SmallColmapContents();
+  contents.images[1].name = "c.ppm";
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("image 'c.ppm' is listed twice"));
+  contents = SmallColmapContents();
+  contents.images[1].id = 8;
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("image id 8 is listed twice"));
+  contents = SmallColmapContents();
+  contents.images.clear();
+  WriteBinary(contents);
+  EXPECT_THAT(ReadError(), HasSubstr("no image is registered"));
+}
+
+TEST_F(ColmapModel, WrongImageSizeIsNamedWithBothSizes) {
+  WriteImages();
+  WriteBinary(SmallColmapContents());
+  scratch_.WriteImage("images/c.ppm", 6, 4);
+  const std::string error = ReadError();
+  EXPECT_THAT(error, HasSubstr("image 'c.ppm': the file is 6x4 pixels"));
+  EXPECT_THAT(error, HasSubstr("camera 3 is 12x8"));
+}
+
+TEST_F(ColmapModel, ExifTurnsOnlyImagesThatFitNoOtherWay) {
+  const auto write_turned = [&](const std::string& name, int width, int height) {
+    const std::string file = (scratch_.path() / "images" / name).string();
+    OIIO::ImageSpec spec(width, height, 1, OIIO::TypeUInt8);
+    spec.attribute("Orientation", 6);
+    const auto output = OIIO::ImageOutput::create("x.tif");
+    ASSERT_TRUE(output && output->open(file, spec));
+    const std::vector<unsigned char> pixels(static_cast<std::size_t>(width) * height);
+    output->write_image(OIIO::TypeUInt8, pixels.data());
+    output->close();
+  };
+  WriteImages();
+  WriteBinary(SmallColmapContents());
+  write_turned("a b.ppm", 6, 5);
+  write_turned("c.ppm", 8, 12);
+  const PosedImages posed = Read();
+  EXPECT_FALSE(posed.images[0].upright_by_exif);
+  EXPECT_TRUE(posed.images[1].upright_by_exif);
+}
+
+TEST_F(ColmapModel, LargestSubModelIsChosenWhateverItsNumber) {
+  ColmapContents contents = SmallColmapContents();
+  contents.points.clear();
+  WriteBinary(contents, "sparse/10");
+  contents.images.resize(1);
+  WriteBinary(contents, "sparse/0");
+  WriteFiles(TextColmapFiles(SmallColmapContents()), ".txt", "sparse/2");
+  WriteBinary(SmallColmapContents(), "sparse/backup");
+  fs::create_directory(Sparse() / "1");
+  EXPECT_THAT(SubModels(Sparse()), ElementsAre(Sparse() / "0", Sparse() / "2", Sparse() / "10"));
+  EXPECT_EQ(LargestModel(Sparse()), Sparse() / "2");
+  EXPECT_THAT(InputErrorOf([&] { LargestModel(scratch_.path()); }),
+              HasSubstr("holds no COLMAP model"));
+}
+
+}  // namespace
+}  // namespace sfm

@@ -1,0 +1,121 @@
+#include "sfm/colmap_program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <stdexcept>
+
+#include "tests/support/fake_colmap.h"
+#include "tests/support/input_error_of.h"
+#include "tests/support/photo_files.h"
+
+namespace sfm {
+namespace {
+
+using nerf::test::FakeColmap;
+using nerf::test::FileBytes;
+using nerf::test::InputErrorOf;
+using nerf::test::ScratchFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class ColmapProgramTest : public testing::Test {
+ protected:
+  ColmapProgram::Outcome RunMapper(const std::string& script) {
+    fake_.Set("do_mapper", script);
+    return ColmapProgram::Find().Run("mapper", {"--x", "1"}, Log(),
+                                     [&](std::string_view line) { heard_.emplace_back(line); });
+  }
+  std::filesystem::path Log() const { return scratch_.path() / "mapper.log"; }
+
+  FakeColmap fake_;
+  ScratchFolder scratch_;
+  std::vector<std::string> heard_;
+};
+
+TEST_F(ColmapProgramTest, MissingProgramIsAnErrorThatSaysHowToInstallIt) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", scratch_.path().c_str(), 1);
+  EXPECT_THAT(InputErrorOf([] { ColmapProgram::Find(); }),
+              AllOf(HasSubstr("apt install colmap"), HasSubstr("transforms.json")));
+  setenv("PATH", path.c_str(), 1);
+}
+
+TEST_F(ColmapProgramTest, OptionsGoByTheNameThatTheProgramKnows) {
+  const auto known = [] {
+    return ColmapProgram::Find().KnownOption(
+        "feature_extractor", {"SiftExtraction.use_gpu", "FeatureExtraction.use_gpu"});
+  };
+  EXPECT_EQ(known(), "SiftExtraction.use_gpu");
+  fake_.Set("help", "  --FeatureExtraction.use_gpu arg (=1)\n");
+  EXPECT_EQ(known(), "FeatureExtraction.use_gpu");
+  fake_.Set("help", "  --SiftExtraction.use_gpu_index arg\n");
+  EXPECT_EQ(known(), "");
+}
+
+TEST_F(ColmapProgramTest, BothStreamsAreHeardAndLoggedAndThereIsNoDisplay) {
+  const auto outcome = RunMapper("echo one; echo two >&2; echo $QT_QPA_PLATFORM");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(heard_, testing::ElementsAre("one", "two", "offscreen"));
+  EXPECT_THAT(FileBytes(Log()), AllOf(HasSubstr("mapper --x 1\n"), HasSubstr("one\ntwo\n")));
+}
+
+TEST_F(ColmapProgramTest, FailureIsExplainedByTheErrorNotByWhatFollowsIt) {
+  const auto outcome = RunMapper(
+      "echo 'Loading database'; echo 'ERROR: cannot open it'; echo '*** Check failure stack "
+      "trace: ***'; echo '    @ 0x7f00 (unknown)'; echo; exit 3");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.last_line, "ERROR: cannot open it");
+  EXPECT_THAT(InputErrorOf([&] { ThrowStepFailed("mapper", outcome, Log()); }),
+              AllOf(HasSubstr("colmap mapper failed (exit status 3): ERROR: cannot open it"),
+                    HasSubstr("mapper.log")));
+  EXPECT_EQ(RunMapper("echo 'Loading'; exit 1").last_line, "Loading");
+}
+
+TEST_F(ColmapProgramTest, EndBySignalIsToldApart) {
+  EXPECT_THAT(InputErrorOf([&] { RunMapper("kill -INT $$"); }), HasSubstr("was interrupted"));
+  EXPECT_THAT(InputErrorOf([&] { RunMapper("echo busy; kill -KILL $$"); }),
+              AllOf(HasSubstr("out of memory?"), HasSubstr("busy")));
+}
+
+TEST_F(ColmapProgramTest, ChildDoesNotOutliveAnException) {
+  fake_.Set("do_mapper", "echo $$; exec sleep 100");
+  std::string pid;
+  EXPECT_THROW(ColmapProgram::Find().Run("mapper", {}, Log(),
+                                         [&](std::string_view line) {
+                                           pid = line;
+                                           throw std::runtime_error("stop");
+                                         }),
+               std::runtime_error);
+  ASSERT_FALSE(pid.empty());
+  EXPECT_NE(kill(std::stoi(pid), 0), 0) << "process " << pid << " still runs";
+}
+
+TEST_F(ColmapProgramTest, UnwritableLogIsNamed) {
+  fake_.Set("do_mapper", "echo one");
+  EXPECT_THAT(InputErrorOf([&] {
+                ColmapProgram::Find().Run("mapper", {}, scratch_.path() / "absent" / "x.log",
+                                          [](std::string_view) {});
+              }),
+              HasSubstr("x.log"));
+}
+
+TEST(ParseProgress, UnderstandsOldAndNewLines) {
+  const auto expect = [](const char* line, int done, int total) {
+    const StepProgress progress = ParseProgress(line);
+    EXPECT_EQ(progress.done, done) << line;
+    EXPECT_EQ(progress.total, total) << line;
+  };
+  expect("Processed file [12/50]", 12, 50);
+  expect("I20250101 10:00:00 12 feature_extraction.cc:258] Processed file [12/50]", 12, 50);
+  expect("Matching block [2/3, 1/3] in 0.123s", 4, 9);
+  expect("Matching image [3/120] in 0.1s", 3, 120);
+  expect("Registering image #12 (34)", 34, 0);
+  expect("  => Image sees 123 / 456 points", 0, 0);
+  expect("Processed file [99999999999999/1]", 0, 0);
+  expect("", 0, 0);
+}
+
+}  // namespace
+}  // namespace sfm

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/scratch_folder.h"
+
+namespace nerf::test {
+
+// A program called `colmap`, first in PATH as long as this object lives. It writes down how it was
+// called and makes text models out of nothing. Files beside it say how it shall behave:
+//   help               what COMMAND -h prints
+//   models             what `mapper` makes, a line a model: its number and how many images it has
+//   models_relaxed     the same, for the call with lower thresholds
+//   do_COMMAND         shell commands to run instead
+//   size               width and height of images that are in no folder of their size
+class FakeColmap {
+ public:
+  FakeColmap() : old_path_(std::getenv("PATH")) {
+    folder_.Write("colmap", kScript);
+    std::filesystem::permissions(folder_.path() / "colmap", std::filesystem::perms::owner_all);
+    Set("help",
+        "--SiftExtraction.use_gpu arg\n--SiftExtraction.max_image_size arg\n"
+        "--SiftMatching.use_gpu arg\n--ExhaustiveMatching.block_size arg\n"
+        "--SequentialMatching.overlap arg\n");
+    Set("models", "");
+    Set("models_relaxed", "");
+    Set("size", "64 48");
+    setenv("PATH", (folder_.path().string() + ":" + old_path_).c_str(), 1);
+  }
+  ~FakeColmap() { setenv("PATH", old_path_.c_str(), 1); }
+
+  void Set(const std::string& file, const std::string& text) const { folder_.Write(file, text); }
+  void Unset(const std::string& file) const { std::filesystem::remove(folder_.path() / file); }
+
+  // The calls so far, "-h" apart, with all arguments.
+  std::vector<std::string> Calls() const {
+    std::ifstream file(folder_.path() / "calls");
+    std::vector<std::string> calls;
+    for (std::string line; std::getline(file, line);) calls.push_back(line);
+    return calls;
+  }
+  // Only their first words.
+  std::vector<std::string> Commands() const {
+    std::vector<std::string> commands;
+    for (const std::string& call : Calls()) commands.push_back(call.substr(0, call.find(' ')));
+    return commands;
+  }
+  void ForgetCalls() const { Unset("calls"); }
+
+ private:
+  static constexpr const char* kScript = R"sh(#!/bin/sh
+here=$(dirname "$0")
+command=$1
+if [ "$2" = -h ]; then cat "$here/help"; exit 0; fi
+echo "$@" >> "$here/calls"
+models=$here/models
+while [ $# -gt 1 ]; do
+  case $1 in
+    --image_path) images=$2;;
+    --output_path) output=$2;;
+    --database_path) database=$2;;
+    --Mapper.init_min_num_inliers) models=$here/models_relaxed;;
+  esac
+  shift
+done
+if [ -f "$here/do_$command" ]; then . "$here/do_$command"; exit; fi
+case $command in
+  feature_extractor) echo 'Processed file [1/1]'; : > "$database";;
+  *_matcher) echo 'Matching block [1/1, 1/1] in 0.1s';;
+esac
+[ $command = mapper ] || exit 0
+read width height < "$here/size"
+while read model count; do
+  mkdir -p "$output/$model"
+  cd "$output/$model"
+  : > cameras.txt; : > images.txt
+  echo '1 0 0 1 255 0 0 0.5 1 0' > points3D.txt
+  (cd "$images" && find . ! -type d | sort | head -n $count) | {
+    id=0
+    while read -r name; do
+      name=${name#./}; id=$((id + 1)); w=$width; h=$height
+      case $name in */*) size=${name%%/*}; w=${size%x*}; h=${size#*x};; esac
+      echo "$id PINHOLE $w $h 50 50 $((w / 2)) $((h / 2))" >> cameras.txt
+      echo "$id 1 0 0 0 $id 0 0 $id $name" >> images.txt
+      if [ $id = 1 ]; then echo '10 10 1' >> images.txt; else echo >> images.txt; fi
+    done
+  }
+done < "$models"
+)sh";
+
+  ScratchFolder folder_;
+  std::string old_path_;
+};
+
+}  // namespace nerf::test

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "nerf/data/dataset.h"
+#include "nerf/sample/capture.h"
+#include "nerf/train/model.h"
+
+namespace nerf::test {
+
+// A capture of the built-in scene as training sees it, without files: every 8th view held out.
+struct SmallCapture {
+  sample::Capture capture;
+  Dataset data;
+  SceneFacts scene;
+};
+SmallCapture MakeSmallCapture(int views, int width, int height);
+
+// A configuration that trains in seconds.
+Config SmallConfig();
+
+}  // namespace nerf::test
