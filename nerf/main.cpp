@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -20,10 +21,18 @@ void SetUpLogging() {
   spdlog::set_default_logger(logger);
 }
 
+// Every step frees and asks again for the same large blocks. By default each of them goes back to
+// the system and returns as fresh, zeroed pages: a tenth of the training time.
+void KeepFreedMemory() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   SetUpLogging();
+  KeepFreedMemory();
   CLI::App app{"nerf: radiance fields from photographs, on an ordinary CPU"};
   app.set_version_flag("--version", NERF_VERSION);
   app.require_subcommand(1);

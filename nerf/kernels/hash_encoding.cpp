@@ -2,47 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace nerf::kernels {
 namespace {
 
-// The cell of a position: its 8 entries and their trilinear weights, which sum to 1.
+// The cell of a position: its 8 entries and their trilinear weights, which sum to 1. Corner k stands
+// at x + (k & 1), y + (k >> 1 & 1), z + (k >> 2).
 template <class Real>
 struct Cell {
   std::uint32_t entry[8];
   Real weight[8];
 };
 
-template <class Real>
-Cell<Real> FindCell(const HashGridLevel& level, const Real* position) {
+// The number of features and the kind of level are template arguments so that the loops over corners
+// and features unroll and nothing is decided inside them.
+template <class Real, bool kDense>
+inline Cell<Real> FindCell(const HashGridLevel& level, const Real* position) {
   std::uint32_t corner[3];
   Real fraction[3];
   for (int axis = 0; axis < 3; ++axis) {
     const Real scaled = position[axis] * static_cast<Real>(level.resolution);
-    const Real floored = std::floor(scaled);
-    // The far face has no cell of its own; rounding may also lift a position onto it.
-    const auto last = static_cast<Real>(level.resolution - 1);
-    const Real cell = std::clamp(floored, Real(0), last);
+    // Positions are not negative, so truncation rounds down. The far face has no cell of its own.
+    const auto cell = std::min(static_cast<std::int32_t>(scaled),
+                               static_cast<std::int32_t>(level.resolution) - 1);
     corner[axis] = static_cast<std::uint32_t>(cell);
-    fraction[axis] = scaled - cell;
+    fraction[axis] = scaled - static_cast<Real>(cell);
   }
+  // Along each axis the index is a sum (dense) or an exclusive or (hashed) of one term an axis.
+  const std::uint32_t side = level.resolution + 1;
+  const std::uint32_t stride_y = kDense ? side : kHashPrimeY;
+  const std::uint32_t stride_z = kDense ? side * side : kHashPrimeZ;
+  const std::uint32_t x[2] = {corner[0], corner[0] + 1};
+  const std::uint32_t y[2] = {corner[1] * stride_y, (corner[1] + 1) * stride_y};
+  const std::uint32_t z[2] = {corner[2] * stride_z, (corner[2] + 1) * stride_z};
+  const Real wx[2] = {Real(1) - fraction[0], fraction[0]};
+  const Real wy[2] = {Real(1) - fraction[1], fraction[1]};
+  const Real wz[2] = {Real(1) - fraction[2], fraction[2]};
   Cell<Real> cell;
   for (std::uint32_t k = 0; k < 8; ++k) {
     const std::uint32_t dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
-    cell.entry[k] = HashGridIndex(level, corner[0] + dx, corner[1] + dy, corner[2] + dz);
-    cell.weight[k] = (dx ? fraction[0] : Real(1) - fraction[0]) *
-                     (dy ? fraction[1] : Real(1) - fraction[1]) *
-                     (dz ? fraction[2] : Real(1) - fraction[2]);
+    cell.entry[k] =
+        kDense ? x[dx] + y[dy] + z[dz] : (x[dx] ^ y[dy] ^ z[dz]) & (level.size - 1);
+    cell.weight[k] = wx[dx] * (wy[dy] * wz[dz]);
   }
   return cell;
 }
 
-// The number of features is a template argument so that the inner loops unroll.
-template <class Real, int kFeatures>
+template <class Real, int kFeatures, bool kDense>
 void ForwardLevel(const HashGridLevel& level, const Real* table, const Real* positions,
                   Real* encoded, int stride, std::int64_t first, std::int64_t last) {
   for (std::int64_t i = first; i < last; ++i) {
-    const Cell<Real> cell = FindCell(level, positions + 3 * i);
+    const Cell<Real> cell = FindCell<Real, kDense>(level, positions + 3 * i);
     Real sum[kFeatures] = {};
     for (int k = 0; k < 8; ++k) {
       const Real* entry = table + static_cast<std::int64_t>(cell.entry[k]) * kFeatures;
@@ -52,11 +63,11 @@ void ForwardLevel(const HashGridLevel& level, const Real* table, const Real* pos
   }
 }
 
-template <class Real, int kFeatures>
+template <class Real, int kFeatures, bool kDense>
 void BackwardLevel(const HashGridLevel& level, const Real* positions, const Real* dL_dencoded,
                    int stride, Real* dL_dtable, std::int64_t count) {
   for (std::int64_t i = 0; i < count; ++i) {
-    const Cell<Real> cell = FindCell(level, positions + 3 * i);
+    const Cell<Real> cell = FindCell<Real, kDense>(level, positions + 3 * i);
     for (int k = 0; k < 8; ++k) {
       Real* entry = dL_dtable + static_cast<std::int64_t>(cell.entry[k]) * kFeatures;
       for (int f = 0; f < kFeatures; ++f) entry[f] += cell.weight[k] * dL_dencoded[i * stride + f];
@@ -64,14 +75,17 @@ void BackwardLevel(const HashGridLevel& level, const Real* positions, const Real
   }
 }
 
-// Calls f with the number of features as a compile-time constant.
+// Calls f with the number of features and the kind of level as compile-time constants.
 template <class F>
-void WithFeatures(int features, F&& f) {
+void Specialize(int features, bool dense, F&& f) {
+  const auto with_features = [&](auto count) {
+    dense ? f(count, std::true_type()) : f(count, std::false_type());
+  };
   switch (features) {
-    case 1: return f(std::integral_constant<int, 1>());
-    case 2: return f(std::integral_constant<int, 2>());
-    case 4: return f(std::integral_constant<int, 4>());
-    default: return f(std::integral_constant<int, 8>());
+    case 1: return with_features(std::integral_constant<int, 1>());
+    case 2: return with_features(std::integral_constant<int, 2>());
+    case 4: return with_features(std::integral_constant<int, 4>());
+    default: return with_features(std::integral_constant<int, 8>());
   }
 }
 
@@ -114,10 +128,10 @@ void HashEncodeForward(const HashGridLayout& layout, std::span<const Real> table
     const std::int64_t end = std::min(last, begin + kBlock);
     for (std::size_t l = 0; l < layout.levels.size(); ++l) {
       const HashGridLevel& level = layout.levels[l];
-      WithFeatures(layout.features, [&](auto features) {
-        ForwardLevel<Real, features.value>(level, table.data() + level.offset * features.value,
-                                           positions.data(),
-                                           encoded.data() + l * features.value, stride, begin, end);
+      Specialize(layout.features, level.dense, [&](auto features, auto dense) {
+        ForwardLevel<Real, features.value, dense.value>(
+            level, table.data() + level.offset * features.value, positions.data(),
+            encoded.data() + l * features.value, stride, begin, end);
       });
     }
   }
@@ -131,8 +145,8 @@ void HashEncodeBackward(const HashGridLayout& layout, std::span<const Real> posi
   const auto count = static_cast<std::int64_t>(positions.size() / 3);
   for (int l = first_level; l < last_level; ++l) {
     const HashGridLevel& level = layout.levels[l];
-    WithFeatures(layout.features, [&](auto features) {
-      BackwardLevel<Real, features.value>(
+    Specialize(layout.features, level.dense, [&](auto features, auto dense) {
+      BackwardLevel<Real, features.value, dense.value>(
           level, positions.data(), dL_dencoded.data() + std::int64_t{l} * features.value, stride,
           dL_dtable.data() + level.offset * features.value, count);
     });
