@@ -67,27 +67,29 @@ void RunPoses(const PosesArguments& arguments) {
 }  // namespace
 
 void AddPosesCommand(CLI::App& app) {
-  auto* command = app.add_subcommand("poses", "Camera poses of a folder of photographs, by COLMAP");
+  auto* command =
+      app.add_subcommand("poses", "Find the camera poses of a folder of photographs, with COLMAP");
   const auto arguments = std::make_shared<PosesArguments>();
   sfm::ColmapOptions& colmap = arguments->colmap;
-  command->add_option("folder", arguments->folder, "folder of photographs")->required();
+  command->add_option("FOLDER", arguments->folder, "Folder of photographs")->required();
   command->add_option("-o,--output", arguments->output,
-                      "where transforms.json and colmap/ go [runs/FOLDER-poses]");
+                      "Where transforms.json and colmap/ go; runs/<name>-poses if not given");
   command
       ->add_option("--matcher", colmap.matcher,
-                   "which pairs are compared: auto, exhaustive (all), sequential (neighbours)")
+                   "Which pairs are compared: auto, exhaustive (all), sequential (neighbours)")
       ->capture_default_str();
   command->add_option("--camera-model", colmap.camera_model, "COLMAP's name of the lens model")
       ->capture_default_str();
   command
       ->add_option("--max-image-size", colmap.max_image_size,
-                   "longer side, in pixels, at which features are found")
+                   "Longer side, in pixels, at which features are found")
       ->capture_default_str();
   command
       ->add_option("--max-features", colmap.max_num_features,
-                   "features a photo; matching takes time with its square")
+                   "Features a photo; matching takes time with its square")
       ->capture_default_str();
-  command->add_option("--threads", colmap.threads, "0: all cores")->capture_default_str();
+  command->add_option("--threads", colmap.threads, "Threads; 0 takes all cores")
+      ->capture_default_str();
   command->footer(
       "Run it again to go on after an interruption; finished steps are skipped.\n"
       "Examples:\n"

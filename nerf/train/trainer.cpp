@@ -6,16 +6,15 @@
 #include <fstream>
 #include <sstream>
 
-#include "nerf/data/camera.h"
 #include "nerf/data/pixel_sampler.h"
 #include "nerf/field/radiance_field.h"
-#include "nerf/sampling/contraction.h"
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/train/checkpoint.h"
 #include "nerf/train/engine.h"
 #include "nerf/train/non_finite_error.h"
 #include "nerf/train/optimizer.h"
 #include "nerf/train/run_folder.h"
+#include "nerf/train/visible_cells.h"
 #include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
 #include "sfm/progress.h"
@@ -30,27 +29,6 @@ double SecondsSince(Clock::time_point begin) {
 }
 
 double Psnr(double mean_squared_error) { return -10.0 * std::log10(mean_squared_error); }
-
-// A cell can be learned if the centre of its ball, grown by its radius, projects into some training
-// photograph.
-void KeepVisibleCells(OccupancyGrid& grid, const std::vector<View>& views) {
-  grid.KeepVisible([&](const Eigen::Vector3f& centre, float half_diagonal) {
-    const Eigen::Vector3d x =
-        Uncontract(ContractedFromUnitCube(centre)).cast<double>();
-    const Eigen::Vector3d edge =
-        Uncontract(ContractedFromUnitCube(centre) * (1.0f + half_diagonal)).cast<double>();
-    // Contracted lengths are 4 in a unit cube, and stretch outside the unit ball.
-    const double radius = 4.0 * half_diagonal * std::max(1.0, x.squaredNorm()) + (edge - x).norm();
-    return std::ranges::any_of(views, [&](const View& view) {
-      const Eigen::Vector3d x_in_camera = view.normalized_from_camera.inverse() * x;
-      if (x_in_camera.norm() < radius) return true;
-      const auto pixel = PixelFromPoint(view.camera, x_in_camera);
-      const double margin = radius / x_in_camera.norm() * FocalLength(view.camera) + 1.0;
-      return pixel && (*pixel)[0] > -margin && (*pixel)[1] > -margin &&
-             (*pixel)[0] < view.camera.width + margin && (*pixel)[1] < view.camera.height + margin;
-    });
-  });
-}
 
 // Metrics of the steps up to and with `last_step`: what a run wrote after the checkpoint it resumes
 // from will be written again.

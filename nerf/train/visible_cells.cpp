@@ -1,0 +1,69 @@
+#include "nerf/train/visible_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "nerf/data/camera.h"
+#include "nerf/sampling/contraction.h"
+
+namespace nerf {
+namespace {
+
+// A view with what decides most cells at once: the cone about its axis that holds its picture.
+struct Sight {
+  const View* view;
+  Eigen::Isometry3d camera_from_normalized;
+  double half_angle;  // of the cone, radians
+};
+
+double HalfAngle(const sfm::Camera& camera) {
+  double widest = 0;
+  constexpr int kPointsOnAnEdge = 9;
+  for (int i = 0; i < kPointsOnAnEdge; ++i) {
+    const double u = camera.width * i / (kPointsOnAnEdge - 1.0);
+    const double v = camera.height * i / (kPointsOnAnEdge - 1.0);
+    for (const Eigen::Vector2d& pixel :
+         {Eigen::Vector2d(u, 0), Eigen::Vector2d(u, camera.height), Eigen::Vector2d(0, v),
+          Eigen::Vector2d(camera.width, v)}) {
+      const auto direction = DirectionFromPixel(camera, pixel);
+      // A border beyond the lens' reach says nothing of the angle: then the whole sphere counts.
+      if (!direction) return std::numbers::pi;
+      widest = std::max(widest, std::acos(std::clamp(direction->z(), -1.0, 1.0)));
+    }
+  }
+  return widest;
+}
+
+bool Sees(const Sight& sight, const Eigen::Vector3d& x_in_normalized, double radius) {
+  const Eigen::Vector3d x = sight.camera_from_normalized * x_in_normalized;
+  const double distance = x.norm();
+  if (distance <= radius) return true;
+  const double angle = std::acos(std::clamp(x.z() / distance, -1.0, 1.0));
+  if (angle > sight.half_angle + std::asin(radius / distance)) return false;
+  const sfm::Camera& camera = sight.view->camera;
+  const auto pixel = PixelFromPoint(camera, x);
+  if (!pixel) return true;  // beyond the lens' reach, yet the ball touches the cone
+  const double margin = FocalLength(camera) * radius / distance + 1.0;
+  return (*pixel)[0] > -margin && (*pixel)[0] < camera.width + margin && (*pixel)[1] > -margin &&
+         (*pixel)[1] < camera.height + margin;
+}
+
+}  // namespace
+
+void KeepVisibleCells(OccupancyGrid& grid, const std::vector<View>& views) {
+  std::vector<Sight> sights;
+  for (const View& view : views) {
+    sights.push_back({&view, view.normalized_from_camera.inverse(), HalfAngle(view.camera)});
+  }
+  grid.KeepVisible([&](const Eigen::Vector3f& centre, float half_diagonal) {
+    const Eigen::Vector3f y = ContractedFromUnitCube(centre);
+    const Eigen::Vector3d x = Uncontract(y).cast<double>();
+    // Outside the unit ball a length grows most along the radius: by 1 / (2 - |y|)^2.
+    const double shrinkage = std::min(1.0, std::pow(2.0 - y.norm(), 2));
+    const double radius = 4.0 * half_diagonal / std::max(shrinkage, 1e-6);
+    return std::ranges::any_of(sights, [&](const Sight& s) { return Sees(s, x, radius); });
+  });
+}
+
+}  // namespace nerf
