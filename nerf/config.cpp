@@ -96,7 +96,8 @@ void ApplyPreset(json& config, const std::string& preset, std::set<std::string> 
   if (found == built_in.end() && !std::filesystem::exists(preset)) {
     std::string names;
     for (const auto& [name, text] : built_in) names += (names.empty() ? "" : ", ") + name;
-    throw sfm::InputError("config {}: is neither a file nor a preset; presets are {}", preset, names);
+    throw sfm::InputError("config {}: is neither a file nor a preset; presets are {}", preset,
+                          names);
   }
   const std::string where = "config " + preset;
   json change =
@@ -113,7 +114,8 @@ void ApplyPreset(json& config, const std::string& preset, std::set<std::string> 
 json ParseAssignment(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw sfm::InputError("--set {}: want block.key=value, for example train.steps=2000", assignment);
+    throw sfm::InputError("--set {}: want block.key=value, for example train.steps=2000",
+                          assignment);
   }
   const std::string text = assignment.substr(equals + 1);
   json value = json::parse(text, nullptr, /*allow_exceptions=*/false);

@@ -4,6 +4,7 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <fstream>
@@ -22,6 +23,10 @@ double CgroupCores() {
   return std::strtod(quota.c_str(), nullptr) / period;
 }
 
+// 0: not chosen yet, then all cores. Kept here because omp_get_max_threads() is no memory: LibTorch
+// changes it behind our back when it starts.
+std::atomic<int> num_threads = 0;
+
 }  // namespace
 
 int AvailableCores() {
@@ -34,9 +39,12 @@ int AvailableCores() {
   return std::max(1, cores);
 }
 
-void SetNumThreads(int threads) { omp_set_num_threads(std::max(1, threads)); }
+void SetNumThreads(int threads) {
+  num_threads = std::max(1, threads);
+  omp_set_num_threads(num_threads);
+}
 
-int NumThreads() { return omp_get_max_threads(); }
+int NumThreads() { return num_threads > 0 ? num_threads.load() : AvailableCores(); }
 
 void ParallelFor(std::int64_t count, std::int64_t grain,
                  const std::function<void(std::int64_t, std::int64_t)>& body) {
@@ -49,7 +57,7 @@ void ParallelFor(std::int64_t count, std::int64_t grain,
   }
   std::exception_ptr failure;
   std::mutex mutex;
-#pragma omp parallel for schedule(static, 1) num_threads(static_cast<int>(chunks))
+#pragma omp parallel for schedule(static, 1) num_threads(static_cast <int>(chunks))
   for (std::int64_t k = 0; k < chunks; ++k) {
     try {
       body(count * k / chunks, count * (k + 1) / chunks);

@@ -27,7 +27,9 @@ constexpr std::array<Entry, kNumCameraModels> kModels = {{
 
 }  // namespace
 
-std::string_view CameraModelName(CameraModel model) { return kModels[static_cast<int>(model)].name; }
+std::string_view CameraModelName(CameraModel model) {
+  return kModels[static_cast<int>(model)].name;
+}
 
 int CameraModelNumParams(CameraModel model) { return kModels[static_cast<int>(model)].num_params; }
 

@@ -38,7 +38,6 @@ fs::path OpenWorkspace(fs::path workspace) {
     throw InputError("{}: holds files that are not of an earlier run; give another output folder",
                      workspace.string());
   }
-  MakeOutputFolder(workspace / "log");
   return workspace;
 }
 
@@ -65,10 +64,10 @@ json FilesAsInputs(const std::vector<fs::path>& files) {
 }  // namespace
 
 ColmapSteps::ColmapSteps(fs::path workspace, const ColmapOptions& options, int photos)
-    : workspace_(OpenWorkspace(std::move(workspace))),
+    : colmap_(ColmapProgram::Find()),
+      workspace_(OpenWorkspace(std::move(workspace))),
       options_(options),
       photos_(photos),
-      colmap_(ColmapProgram::Find()),
       ledger_(workspace_ / "steps.json") {}
 
 void ColmapSteps::PrepareImages(const std::vector<fs::path>& files,
@@ -194,6 +193,7 @@ void ColmapSteps::AddThreads(const std::string& command, std::initializer_list<c
 
 ColmapProgram::Outcome ColmapSteps::Run(const std::string& step, const std::string& command,
                                         const Arguments& arguments) const {
+  MakeOutputFolder(LogFile(step).parent_path());
   ProgressLine line(step, photos_);
   int total = photos_;
   return colmap_.Run(command, arguments, LogFile(step), [&](std::string_view said) {

@@ -71,10 +71,10 @@ class ColmapSteps {
   void RunMapper(const std::string& step, const std::filesystem::path& target,
                  const Arguments& thresholds);
 
+  ColmapProgram colmap_;  // first: where it is missing, nothing is written
   std::filesystem::path workspace_;
   ColmapOptions options_;
   int photos_;
-  ColmapProgram colmap_;
   StepLedger ledger_;
   std::vector<std::pair<std::string, double>> seconds_;
 };

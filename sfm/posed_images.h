@@ -14,17 +14,17 @@ namespace sfm {
 // The camera models of COLMAP 3.8, in the order of its numeric ids.
 // Source: COLMAP src/base/camera_models.h (formulae), documentation "Camera Models" (names).
 enum class CameraModel {
-  kSimplePinhole = 0,      // f, cx, cy
-  kPinhole,                // fx, fy, cx, cy
-  kSimpleRadial,           // f, cx, cy, k
-  kRadial,                 // f, cx, cy, k1, k2
-  kOpenCV,                 // fx, fy, cx, cy, k1, k2, p1, p2
-  kOpenCVFisheye,          // fx, fy, cx, cy, k1, k2, k3, k4
-  kFullOpenCV,             // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, k5, k6
-  kFov,                    // fx, fy, cx, cy, omega
-  kSimpleRadialFisheye,    // f, cx, cy, k
-  kRadialFisheye,          // f, cx, cy, k1, k2
-  kThinPrismFisheye,       // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, sx1, sy1
+  kSimplePinhole = 0,    // f, cx, cy
+  kPinhole,              // fx, fy, cx, cy
+  kSimpleRadial,         // f, cx, cy, k
+  kRadial,               // f, cx, cy, k1, k2
+  kOpenCV,               // fx, fy, cx, cy, k1, k2, p1, p2
+  kOpenCVFisheye,        // fx, fy, cx, cy, k1, k2, k3, k4
+  kFullOpenCV,           // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, k5, k6
+  kFov,                  // fx, fy, cx, cy, omega
+  kSimpleRadialFisheye,  // f, cx, cy, k
+  kRadialFisheye,        // f, cx, cy, k1, k2
+  kThinPrismFisheye,     // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, sx1, sy1
 };
 inline constexpr int kNumCameraModels = 11;
 
@@ -44,11 +44,11 @@ enum class Split { kUnspecified, kTrain, kValidation, kTest };
 
 // One photograph with a known pose.
 struct PosedImage {
-  std::string name;                // as the source calls it, unique, '/' between folders
-  std::filesystem::path path;      // where the pixels are
-  int camera = 0;                  // index into PosedImages::cameras
+  std::string name;                     // as the source calls it, unique, '/' between folders
+  std::filesystem::path path;           // where the pixels are
+  int camera = 0;                       // index into PosedImages::cameras
   Eigen::Isometry3d world_from_camera;  // OpenCV axes: x right, y down, z forward; source's units
-  bool upright_by_exif = false;    // the camera describes the pixels after turning them by EXIF
+  bool upright_by_exif = false;  // the camera describes the pixels after turning them by EXIF
   Split split = Split::kUnspecified;
 };
 
@@ -71,7 +71,7 @@ struct SparsePoint {
 struct PosedImages {
   std::vector<Camera> cameras;
   std::vector<PosedImage> images;
-  std::vector<SparsePoint> points;                          // may be empty
+  std::vector<SparsePoint> points;                            // may be empty
   std::optional<std::array<double, 2>> depth_range_in_world;  // near, far, where the source says so
   std::vector<std::string> missing;  // named by the source, but not among the files
   std::filesystem::path source;      // the file or folder the poses were read from

@@ -31,12 +31,15 @@ void ProgressLine::Update(std::int64_t done, const std::string& note) {
   std::string line = title_;
   if (total_ > 0) {
     constexpr int kBarWidth = 24;
-    const double fraction = std::clamp(static_cast<double>(done) / static_cast<double>(total_), 0.0, 1.0);
+    const double fraction =
+        std::clamp(static_cast<double>(done) / static_cast<double>(total_), 0.0, 1.0);
     const int filled = static_cast<int>(fraction * kBarWidth);
     const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    line += fmt::format(" [{:=<{}}{: <{}}] {}/{}", "", filled, "", kBarWidth - filled, done, total_);
+    line +=
+        fmt::format(" [{:=<{}}{: <{}}] {}/{}", "", filled, "", kBarWidth - filled, done, total_);
     if (done > start_) {
-      const double left = elapsed * static_cast<double>(total_ - done) / static_cast<double>(done - start_);
+      const double left =
+          elapsed * static_cast<double>(total_ - done) / static_cast<double>(done - start_);
       line += fmt::format("  {} left", FormatDuration(left));
     }
   } else {

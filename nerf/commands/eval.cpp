@@ -68,10 +68,8 @@ nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& argumen
   const Score mean = MeanOf(scores);
   nlohmann::json images = nlohmann::json::array();
   for (const Score& s : scores) {
-    images.push_back({{"name", s.name},
-                      {"psnr", JsonNumber(s.psnr)},
-                      {"ssim", s.ssim},
-                      {"seconds", s.seconds}});
+    images.push_back(
+        {{"name", s.name}, {"psnr", JsonNumber(s.psnr)}, {"ssim", s.ssim}, {"seconds", s.seconds}});
   }
   return {{"split", arguments.split},
           {"downscale", run.model.config.data.downscale},
@@ -124,10 +122,10 @@ void RunEval(const EvalArguments& arguments) {
       continue;
     }
     const auto begin = std::chrono::steady_clock::now();
-    const RenderedView view = RenderView(
-        *run.model.engine, Downscaled(run.posed.cameras[image->camera], downscale),
-        scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
-        DisplayBackground(scene.has_alpha), scene.encoding);
+    const RenderedView view =
+        RenderView(*run.model.engine, Downscaled(run.posed.cameras[image->camera], downscale),
+                   scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
+                   DisplayBackground(scene.has_alpha), scene.encoding);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     const double psnr = Psnr(truth, view.rgb);
     scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds.count()});
@@ -136,7 +134,8 @@ void RunEval(const EvalArguments& arguments) {
   }
   progress.Finish();
   if (scores.empty()) {
-    throw sfm::InputError("{}: none of the {} images could be read", arguments.run, arguments.split);
+    throw sfm::InputError("{}: none of the {} images could be read", arguments.run,
+                          arguments.split);
   }
 
   const nlohmann::json result = JsonFromScores(run, arguments, scores);

@@ -55,7 +55,7 @@ struct Shot {
 
 struct ShotList {
   std::vector<Shot> shots;
-  std::string folder;                     // below RUN/renders
+  std::string folder;                       // below RUN/renders
   std::optional<double> frames_per_second;  // of a film
 };
 
@@ -162,11 +162,11 @@ void RunRender(const RenderArguments& arguments) {
   }
   sfm::ProgressLine progress("rendering", pixels);
   for (const Shot& shot : list.shots) {
-    const RenderedView view = RenderView(
-        *run.model.engine, shot.camera,
-        scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
-        DisplayBackground(scene.has_alpha), scene.encoding,
-        [&](std::int64_t of_this) { progress.Update(done + of_this, shot.name); });
+    const RenderedView view =
+        RenderView(*run.model.engine, shot.camera,
+                   scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
+                   DisplayBackground(scene.has_alpha), scene.encoding,
+                   [&](std::int64_t of_this) { progress.Update(done + of_this, shot.name); });
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
     WriteShot(view, scene, arguments, output / shot.name);
   }

@@ -1,5 +1,7 @@
 #include "nerf/commands/threads.h"
 
+#include <ATen/Parallel.h>
+
 #include "nerf/parallel.h"
 #include "sfm/input_error.h"
 
@@ -12,6 +14,7 @@ int UseThreads(int threads) {
   // LibTorch's own default has been seen to be one thread on a machine with two.
   const int used = threads > 0 ? threads : AvailableCores();
   SetNumThreads(used);
+  at::set_num_threads(used);
   return used;
 }
 

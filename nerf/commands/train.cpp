@@ -70,9 +70,10 @@ sfm::PosedImages FindPoses(const fs::path& input, const fs::path& run, int threa
   sfm::PosedImages posed = sfm::PosesFromPhotos(location.images, ColmapPath(run), colmap, &report);
   double seconds = 0;
   for (const auto& [step, step_seconds] : report.seconds) seconds += step_seconds;
-  fmt::print("poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
-             report.registered, report.photos, report.points, report.mean_reprojection_error,
-             sfm::FormatDuration(seconds));
+  fmt::print(
+      "poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
+      report.registered, report.photos, report.points, report.mean_reprojection_error,
+      sfm::FormatDuration(seconds));
   return posed;
 }
 
@@ -84,9 +85,10 @@ void PrintData(const sfm::PosedImages& posed, const Dataset& data, int threads) 
     for (const View& view : *views) bytes += view.rgba.size() * sizeof(Eigen::half);
   }
   const sfm::Camera& camera = data.train.front().camera;
-  fmt::print("{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels, {} MB held\n",
-             threads, data.train.size(), data.validation.size(), held_out, camera.width,
-             camera.height, bytes >> 20);
+  fmt::print(
+      "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels, {} MB held\n",
+      threads, data.train.size(), data.validation.size(), held_out, camera.width, camera.height,
+      bytes >> 20);
   std::fflush(stdout);
 }
 
@@ -108,8 +110,9 @@ Dataset Load(const sfm::PosedImages& posed, const DataOptions& options,
 }
 
 void Report(const TrainSummary& summary, const fs::path& run) {
-  const std::string psnr =
-      summary.validation_psnr > 0 ? fmt::format(", validation {:.2f} dB", summary.validation_psnr) : "";
+  const std::string psnr = summary.validation_psnr > 0
+                               ? fmt::format(", validation {:.2f} dB", summary.validation_psnr)
+                               : "";
   if (summary.finished) {
     fmt::print("trained {} steps in {:.1f} s{}\n{}\nnext: nerf eval {}\n", summary.step,
                summary.training_seconds, psnr, run.string(), run.string());
@@ -175,7 +178,8 @@ void AddTrainCommand(CLI::App& app) {
   command->add_option("input", arguments->input,
                       "folder of photos, COLMAP project, transforms.json, or LLFF folder");
   command->add_option("-o,--output", arguments->output, "run folder [runs/INPUT]");
-  command->add_option("--config", arguments->preset, "preset (fast, balanced, accurate) or JSON file")
+  command
+      ->add_option("--config", arguments->preset, "preset (fast, balanced, accurate) or JSON file")
       ->capture_default_str();
   command->add_option("--set", arguments->assignments, "change one key: block.key=value")
       ->allow_extra_args(false)

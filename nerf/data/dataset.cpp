@@ -38,7 +38,8 @@ bool HasTransparentPixel(const View& view) {
 }  // namespace
 
 void DataOptions::Check() const {
-  if (downscale < 1) throw sfm::InputError("config: data.downscale is {}; use 1 or more", downscale);
+  if (downscale < 1)
+    throw sfm::InputError("config: data.downscale is {}; use 1 or more", downscale);
   if (test_every < 0 || test_every == 1) {
     throw sfm::InputError("config: data.test_every is {}; use 2 or more, or 0 to hold out none",
                           test_every);
@@ -106,8 +107,7 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
       try {
         const Image pixels = LoadPhotograph(posed, image, options.downscale);
         loaded[i].encoding = pixels.encoding;
-        loaded[i].view =
-            MakeView(posed, image, pixels, options.downscale, normalized_from_world);
+        loaded[i].view = MakeView(posed, image, pixels, options.downscale, normalized_from_world);
       } catch (const sfm::InputError& error) {
         loaded[i].failure = error.what();
       }
@@ -125,8 +125,7 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
     }
     encoding = loaded[i].encoding;
     data.has_alpha = data.has_alpha || HasTransparentPixel(*loaded[i].view);
-    auto& views =
-        posed.images[i].split == sfm::Split::kValidation ? data.validation : data.train;
+    auto& views = posed.images[i].split == sfm::Split::kValidation ? data.validation : data.train;
     views.push_back(std::move(*loaded[i].view));
   }
   data.encoding = encoding.value_or(ColorEncoding::kSrgb);

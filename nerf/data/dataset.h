@@ -14,9 +14,9 @@
 namespace nerf {
 
 struct DataOptions {
-  int downscale = 1;           // area-average photographs by this factor
-  int test_every = 8;          // hold out images 0, 8, 16, ... by name; 0 holds out none
-  int validation_images = 1;   // taken out of the training images to watch the progress; 0: none
+  int downscale = 1;          // area-average photographs by this factor
+  int test_every = 8;         // hold out images 0, 8, 16, ... by name; 0 holds out none
+  int validation_images = 1;  // taken out of the training images to watch the progress; 0: none
 
   void Check() const;
 };
@@ -38,7 +38,7 @@ struct Dataset {
   std::vector<View> train;
   std::vector<View> validation;
   ColorEncoding encoding = ColorEncoding::kSrgb;
-  bool has_alpha = false;  // some pixel is not opaque
+  bool has_alpha = false;            // some pixel is not opaque
   std::vector<std::string> skipped;  // photographs that could not be read, with the reason
 };
 

@@ -16,7 +16,9 @@ constexpr std::uint64_t kBackgroundStream = 0x6261636b67726e64ull;
 constexpr std::uint64_t kJitterStream = 0x6a69747465725f5full;
 
 // Streams of different steps must not meet.
-std::uint64_t StreamOfStep(std::uint64_t stream, std::uint64_t step) { return Mix64(stream + step); }
+std::uint64_t StreamOfStep(std::uint64_t stream, std::uint64_t step) {
+  return Mix64(stream + step);
+}
 
 // Writes ray r of the batch; false where the lens does not reach the pixel.
 bool SetRay(RayBatch& rays, std::int64_t r, const sfm::Camera& camera,
@@ -54,8 +56,8 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
         }
         const std::uint64_t bits =
             RandomBits(seed, StreamOfStep(kPixelStream, step), kMostDraws * r + draw);
-        const auto global = static_cast<std::int64_t>(
-            bits % static_cast<std::uint64_t>(first_pixel_.back()));
+        const auto global =
+            static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(first_pixel_.back()));
         const auto after = std::ranges::upper_bound(first_pixel_, global);
         const View& view = views_[after - first_pixel_.begin() - 1];
         const std::int64_t pixel = global - *(after - 1);

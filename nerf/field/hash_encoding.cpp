@@ -10,7 +10,8 @@ constexpr std::int64_t kSamplesWorthAThread = 512;
 
 struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
   static torch::Tensor forward(torch::autograd::AutogradContext* ctx, const torch::Tensor& table,
-                               const torch::Tensor& positions, const kernels::HashGridLayout* layout) {
+                               const torch::Tensor& positions,
+                               const kernels::HashGridLayout* layout) {
     const std::int64_t count = positions.size(0);
     torch::Tensor encoded = torch::empty({count, layout->OutputSize()}, table.options());
     AT_DISPATCH_FLOATING_TYPES(table.scalar_type(), "hash_encode_forward", [&] {
@@ -32,8 +33,8 @@ struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
     const auto* layout =
         reinterpret_cast<const kernels::HashGridLayout*>(ctx->saved_data["layout"].toInt());
     const torch::Tensor dL_dencoded = grads[0].contiguous();
-    torch::Tensor dL_dtable = torch::zeros({ctx->saved_data["entries"].toInt(), layout->features},
-                                           dL_dencoded.options());
+    torch::Tensor dL_dtable =
+        torch::zeros({ctx->saved_data["entries"].toInt(), layout->features}, dL_dencoded.options());
     AT_DISPATCH_FLOATING_TYPES(dL_dencoded.scalar_type(), "hash_encode_backward", [&] {
       ParallelFor(static_cast<std::int64_t>(layout->levels.size()), 1,
                   [&](std::int64_t first, std::int64_t last) {
@@ -57,8 +58,8 @@ HashEncoding::HashEncoding(const kernels::HashGridOptions& options, std::uint64_
 }
 
 torch::Tensor HashEncoding::forward(const torch::Tensor& positions) {
-  TORCH_CHECK(positions.dim() == 2 && positions.size(1) == 3, "HashEncoding: positions must be [N,3], got ",
-              positions.sizes());
+  TORCH_CHECK(positions.dim() == 2 && positions.size(1) == 3,
+              "HashEncoding: positions must be [N,3], got ", positions.sizes());
   TORCH_CHECK(positions.scalar_type() == table_.scalar_type(), "HashEncoding: positions are ",
               positions.scalar_type(), ", the table is ", table_.scalar_type());
   return HashEncodeFunction::apply(table_, positions.contiguous(), &layout_);

@@ -33,16 +33,16 @@ std::vector<std::int64_t> ColorWidths(const FieldOptions& options) {
 RadianceField::RadianceField(const kernels::HashGridOptions& grid, const FieldOptions& options,
                              ColorEncoding encoding, std::uint64_t seed)
     : encoding_(encoding), geometry_features_(options.geometry_features) {
-  hash_encoding_ = register_module("hash_encoding",
-                                   std::make_shared<HashEncoding>(grid, Mix64(seed + 0)));
+  hash_encoding_ =
+      register_module("hash_encoding", std::make_shared<HashEncoding>(grid, Mix64(seed + 0)));
   density_network_ = register_module(
       "density_network",
       std::make_shared<Mlp>(
           std::vector<std::int64_t>{hash_encoding_->Layout().OutputSize(), options.hidden_width,
                                     1 + options.geometry_features},
           Mix64(seed + 1)));
-  color_network_ =
-      register_module("color_network", std::make_shared<Mlp>(ColorWidths(options), Mix64(seed + 2)));
+  color_network_ = register_module("color_network",
+                                   std::make_shared<Mlp>(ColorWidths(options), Mix64(seed + 2)));
 }
 
 torch::Tensor RadianceField::ContractedDensity(const torch::Tensor& positions) {

@@ -21,7 +21,8 @@ struct FieldOutput {
 // the direction. Source: Mueller et al. 2022, section 5.4.
 class RadianceField : public torch::nn::Module {
  public:
-  // encoding of colour: sRGB-encoded fields end in a sigmoid, linear ones in a truncated exponential.
+  // encoding of colour: sRGB-encoded fields end in a sigmoid, linear ones in a truncated
+  // exponential.
   RadianceField(const kernels::HashGridOptions& grid, const FieldOptions& options,
                 ColorEncoding encoding, std::uint64_t seed);
 

@@ -6,8 +6,9 @@
 
 namespace nerf::kernels {
 
-bool AdamStep(const AdamCoefficients& adam, std::span<float> parameter, std::span<const float> gradient,
-              std::span<float> first_moment, std::span<float> second_moment) {
+bool AdamStep(const AdamCoefficients& adam, std::span<float> parameter,
+              std::span<const float> gradient, std::span<float> first_moment,
+              std::span<float> second_moment) {
   const FlushDenormals flush;
   const float step_size = adam.learning_rate / adam.bias_correction1;
   const float scale2 = 1.0f / std::sqrt(adam.bias_correction2);

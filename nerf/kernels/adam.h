@@ -17,7 +17,8 @@ struct AdamCoefficients {
 // One step of Adam in a single pass over memory. Source: Kingma and Ba 2015, algorithm 1.
 //   parameter, first_moment, second_moment  updated
 //   returns  whether every gradient was finite; where not, the parameters are spoilt
-bool AdamStep(const AdamCoefficients& adam, std::span<float> parameter, std::span<const float> gradient,
-              std::span<float> first_moment, std::span<float> second_moment);
+bool AdamStep(const AdamCoefficients& adam, std::span<float> parameter,
+              std::span<const float> gradient, std::span<float> first_moment,
+              std::span<float> second_moment);
 
 }  // namespace nerf::kernels

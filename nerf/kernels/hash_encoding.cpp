@@ -7,16 +7,16 @@
 namespace nerf::kernels {
 namespace {
 
-// The cell of a position: its 8 entries and their trilinear weights, which sum to 1. Corner k stands
-// at x + (k & 1), y + (k >> 1 & 1), z + (k >> 2).
+// The cell of a position: its 8 entries and their trilinear weights, which sum to 1. Corner k
+// stands at x + (k & 1), y + (k >> 1 & 1), z + (k >> 2).
 template <class Real>
 struct Cell {
   std::uint32_t entry[8];
   Real weight[8];
 };
 
-// The number of features and the kind of level are template arguments so that the loops over corners
-// and features unroll and nothing is decided inside them.
+// The number of features and the kind of level are template arguments so that the loops over
+// corners and features unroll and nothing is decided inside them.
 template <class Real, bool kDense>
 inline Cell<Real> FindCell(const HashGridLevel& level, const Real* position) {
   std::uint32_t corner[3];
@@ -42,8 +42,7 @@ inline Cell<Real> FindCell(const HashGridLevel& level, const Real* position) {
   Cell<Real> cell;
   for (std::uint32_t k = 0; k < 8; ++k) {
     const std::uint32_t dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
-    cell.entry[k] =
-        kDense ? x[dx] + y[dy] + z[dz] : (x[dx] ^ y[dy] ^ z[dz]) & (level.size - 1);
+    cell.entry[k] = kDense ? x[dx] + y[dy] + z[dz] : (x[dx] ^ y[dy] ^ z[dz]) & (level.size - 1);
     cell.weight[k] = wx[dx] * (wy[dy] * wz[dz]);
   }
   return cell;
@@ -82,10 +81,14 @@ void Specialize(int features, bool dense, F&& f) {
     dense ? f(count, std::true_type()) : f(count, std::false_type());
   };
   switch (features) {
-    case 1: return with_features(std::integral_constant<int, 1>());
-    case 2: return with_features(std::integral_constant<int, 2>());
-    case 4: return with_features(std::integral_constant<int, 4>());
-    default: return with_features(std::integral_constant<int, 8>());
+    case 1:
+      return with_features(std::integral_constant<int, 1>());
+    case 2:
+      return with_features(std::integral_constant<int, 2>());
+    case 4:
+      return with_features(std::integral_constant<int, 4>());
+    default:
+      return with_features(std::integral_constant<int, 8>());
   }
 }
 
@@ -118,8 +121,8 @@ HashGridLayout MakeHashGridLayout(const HashGridOptions& options) {
 
 template <class Real>
 void HashEncodeForward(const HashGridLayout& layout, std::span<const Real> table,
-                       std::span<const Real> positions, std::span<Real> encoded,
-                       std::int64_t first, std::int64_t last) {
+                       std::span<const Real> positions, std::span<Real> encoded, std::int64_t first,
+                       std::int64_t last) {
   const int stride = layout.OutputSize();
   // Blocks of samples, levels outermost within a block: one level's table stays in the cache while
   // the block's rows of `encoded` do too.
@@ -153,11 +156,11 @@ void HashEncodeBackward(const HashGridLayout& layout, std::span<const Real> posi
   }
 }
 
-#define NERF_INSTANTIATE(Real)                                                                  \
-  template void HashEncodeForward(const HashGridLayout&, std::span<const Real>,                 \
-                                  std::span<const Real>, std::span<Real>, std::int64_t,         \
-                                  std::int64_t);                                                \
-  template void HashEncodeBackward(const HashGridLayout&, std::span<const Real>,                \
+#define NERF_INSTANTIATE(Real)                                                          \
+  template void HashEncodeForward(const HashGridLayout&, std::span<const Real>,         \
+                                  std::span<const Real>, std::span<Real>, std::int64_t, \
+                                  std::int64_t);                                        \
+  template void HashEncodeBackward(const HashGridLayout&, std::span<const Real>,        \
                                    std::span<const Real>, std::span<Real>, int, int);
 NERF_INSTANTIATE(float)
 NERF_INSTANTIATE(double)

@@ -9,9 +9,9 @@ namespace nerf::kernels {
 // Multi-resolution hash encoding. Source: Mueller et al. 2022, "Instant Neural Graphics Primitives
 // with a Multiresolution Hash Encoding", section 3.
 struct HashGridOptions {
-  int levels = 16;
-  int features = 2;           // a level; 1, 2, 4 or 8
-  int log2_table_size = 18;   // most entries a level, as a power of two
+  int levels = 8;
+  int features = 4;           // a level; 1, 2, 4 or 8
+  int log2_table_size = 17;   // most entries a level, as a power of two
   int base_resolution = 16;   // cells along an axis at the coarsest level
   int max_resolution = 2048;  // and at the finest
 };
@@ -20,8 +20,8 @@ struct HashGridOptions {
 // vertex has its own entry ("dense"); beyond that entries are shared by a spatial hash.
 struct HashGridLevel {
   std::uint32_t resolution = 0;
-  std::uint32_t size = 0;    // entries
-  std::int64_t offset = 0;   // first entry in the table
+  std::uint32_t size = 0;   // entries
+  std::int64_t offset = 0;  // first entry in the table
   bool dense = false;
 };
 
@@ -56,8 +56,8 @@ inline std::uint32_t HashGridIndex(const HashGridLevel& level, std::uint32_t x, 
 // Samples [first, last) only, so that a caller can deal samples out to threads.
 template <class Real>
 void HashEncodeForward(const HashGridLayout& layout, std::span<const Real> table,
-                       std::span<const Real> positions, std::span<Real> encoded,
-                       std::int64_t first, std::int64_t last);
+                       std::span<const Real> positions, std::span<Real> encoded, std::int64_t first,
+                       std::int64_t last);
 
 // Adds dL/dtable of all N samples for the levels [first_level, last_level) only: a level's entries
 // belong to one thread, so that the scatter needs no atomics and repeats bit for bit.

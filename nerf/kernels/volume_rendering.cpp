@@ -82,8 +82,8 @@ void CompositeBackward(const RaySegments<Real>& in, const CompositedGradients<Re
 
 template <class Real>
 void CountVisible(std::span<const std::int64_t> ray_begin, std::span<const Real> sigma,
-                  std::span<const Real> dt, double stop_transmittance,
-                  std::span<std::int64_t> kept, std::int64_t first_ray, std::int64_t last_ray) {
+                  std::span<const Real> dt, double stop_transmittance, std::span<std::int64_t> kept,
+                  std::int64_t first_ray, std::int64_t last_ray) {
   const double stop_tau = -std::log(stop_transmittance);
   for (std::int64_t ray = first_ray; ray < last_ray; ++ray) {
     double tau = 0;
@@ -96,14 +96,14 @@ void CountVisible(std::span<const std::int64_t> ray_begin, std::span<const Real>
   }
 }
 
-#define NERF_INSTANTIATE(Real)                                                                 \
-  template void CompositeForward(const RaySegments<Real>&, const Composited<Real>&,            \
-                                 std::int64_t, std::int64_t);                                  \
-  template void CompositeBackward(const RaySegments<Real>&, const CompositedGradients<Real>&,  \
-                                  const SegmentGradients<Real>&, std::int64_t, std::int64_t);  \
-  template void CountVisible(std::span<const std::int64_t>, std::span<const Real>,             \
-                             std::span<const Real>, double, std::span<std::int64_t>,           \
-                             std::int64_t, std::int64_t);
+#define NERF_INSTANTIATE(Real)                                                                     \
+  template void CompositeForward(const RaySegments<Real>&, const Composited<Real>&, std::int64_t,  \
+                                 std::int64_t);                                                    \
+  template void CompositeBackward(const RaySegments<Real>&, const CompositedGradients<Real>&,      \
+                                  const SegmentGradients<Real>&, std::int64_t, std::int64_t);      \
+  template void CountVisible(std::span<const std::int64_t>, std::span<const Real>,                 \
+                             std::span<const Real>, double, std::span<std::int64_t>, std::int64_t, \
+                             std::int64_t);
 NERF_INSTANTIATE(float)
 NERF_INSTANTIATE(double)
 #undef NERF_INSTANTIATE

@@ -12,8 +12,8 @@ namespace nerf::kernels {
 //
 // Right in the hard cases by construction: the optical depth is summed in double, opacity comes
 // from expm1 (thin fog keeps its opacity), transmittance from exp of the sum (no product of many
-// factors), and the gradient's suffix is summed from the back (no difference of near-equal colours).
-// An interval of length 0 counts as empty, whatever its density.
+// factors), and the gradient's suffix is summed from the back (no difference of near-equal
+// colours). An interval of length 0 counts as empty, whatever its density.
 template <class Real>
 struct RaySegments {
   std::span<const std::int64_t> ray_begin;  // [R+1] first sample of each ray; the last entry is S
@@ -28,7 +28,8 @@ template <class Real>
 struct Composited {
   std::span<Real> rgb;      // [R,3]
   std::span<Real> opacity;  // [R] in [0,1]
-  std::span<Real> depth;    // [R] sum w_i t_i: divide by opacity for the expected depth of what was hit
+  std::span<Real>
+      depth;  // [R] sum w_i t_i: divide by opacity for the expected depth of what was hit
 };
 
 template <class Real>
@@ -62,7 +63,7 @@ void CompositeBackward(const RaySegments<Real>& in, const CompositedGradients<Re
 //   kept  [R] number of samples of each ray before that point
 template <class Real>
 void CountVisible(std::span<const std::int64_t> ray_begin, std::span<const Real> sigma,
-                  std::span<const Real> dt, double stop_transmittance,
-                  std::span<std::int64_t> kept, std::int64_t first_ray, std::int64_t last_ray);
+                  std::span<const Real> dt, double stop_transmittance, std::span<std::int64_t> kept,
+                  std::int64_t first_ray, std::int64_t last_ray);
 
 }  // namespace nerf::kernels

@@ -16,10 +16,12 @@ kernels::RaySegments<Real> Segments(const torch::autograd::variable_list& v) {
 }
 
 struct VolumeRenderingFunction : torch::autograd::Function<VolumeRenderingFunction> {
-  static torch::autograd::variable_list forward(
-      torch::autograd::AutogradContext* ctx, const torch::Tensor& ray_begin,
-      const torch::Tensor& sigma, const torch::Tensor& radiance, const torch::Tensor& dt,
-      const torch::Tensor& t, const torch::Tensor& background) {
+  static torch::autograd::variable_list forward(torch::autograd::AutogradContext* ctx,
+                                                const torch::Tensor& ray_begin,
+                                                const torch::Tensor& sigma,
+                                                const torch::Tensor& radiance,
+                                                const torch::Tensor& dt, const torch::Tensor& t,
+                                                const torch::Tensor& background) {
     const torch::autograd::variable_list in = {ray_begin, sigma, radiance, dt, t, background};
     const std::int64_t rays = ray_begin.size(0) - 1;
     torch::Tensor rgb = torch::empty({rays, 3}, sigma.options());
@@ -50,9 +52,8 @@ struct VolumeRenderingFunction : torch::autograd::Function<VolumeRenderingFuncti
       const kernels::CompositedGradients<scalar_t> grad = {Span<const scalar_t>(dL_drgb),
                                                            Span<const scalar_t>(dL_dopacity),
                                                            Span<const scalar_t>(dL_ddepth)};
-      const kernels::SegmentGradients<scalar_t> out = {Span<scalar_t>(dL_dsigma),
-                                                       Span<scalar_t>(dL_dradiance),
-                                                       Span<scalar_t>(dL_dbackground)};
+      const kernels::SegmentGradients<scalar_t> out = {
+          Span<scalar_t>(dL_dsigma), Span<scalar_t>(dL_dradiance), Span<scalar_t>(dL_dbackground)};
       ParallelFor(rays, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
         kernels::CompositeBackward<scalar_t>(Segments<scalar_t>(in), grad, out, first, last);
       });
@@ -74,8 +75,9 @@ VolumeRendering RenderVolume(const torch::Tensor& ray_begin, const torch::Tensor
   TORCH_CHECK(ray_begin[rays].item<std::int64_t>() == samples, "RenderVolume: ray_begin ends at ",
               ray_begin[rays].item<std::int64_t>(), ", but there are ", samples, " samples");
   TORCH_CHECK(sigma.sizes() == at::IntArrayRef({samples}) &&
-                  radiance.sizes() == at::IntArrayRef({samples, 3}) && dt.sizes() == sigma.sizes() &&
-                  t.sizes() == sigma.sizes() && background.sizes() == at::IntArrayRef({rays, 3}),
+                  radiance.sizes() == at::IntArrayRef({samples, 3}) &&
+                  dt.sizes() == sigma.sizes() && t.sizes() == sigma.sizes() &&
+                  background.sizes() == at::IntArrayRef({rays, 3}),
               "RenderVolume: want sigma [S], radiance [S,3], dt [S], t [S], background [R,3]; got ",
               sigma.sizes(), radiance.sizes(), dt.sizes(), t.sizes(), background.sizes());
   const auto out = VolumeRenderingFunction::apply(ray_begin.contiguous(), sigma.contiguous(),

@@ -30,7 +30,8 @@ void OccupancyOptions::Check() const {
     throw sfm::InputError("config: occupancy.threshold is {}; use a value between 0 and 1",
                           threshold);
   }
-  if (warmup_steps < 0) throw sfm::InputError("config: occupancy.warmup_steps must not be negative");
+  if (warmup_steps < 0)
+    throw sfm::InputError("config: occupancy.warmup_steps must not be negative");
   if (update_every < 1) throw sfm::InputError("config: occupancy.update_every must be at least 1");
 }
 
@@ -46,7 +47,8 @@ std::int64_t OccupancyGrid::CellOf(const Eigen::Vector3f& position) const {
   const Eigen::Array3f scaled = position.array() * n;
   if (!((scaled >= 0).all() && (scaled <= n).all())) return -1;
   const Eigen::Array3i cell = scaled.cast<int>().min(options_.resolution - 1);
-  return (static_cast<std::int64_t>(cell[2]) * options_.resolution + cell[1]) * options_.resolution +
+  return (static_cast<std::int64_t>(cell[2]) * options_.resolution + cell[1]) *
+             options_.resolution +
          cell[0];
 }
 

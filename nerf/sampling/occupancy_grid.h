@@ -11,7 +11,7 @@ namespace nerf {
 struct OccupancyOptions {
   int resolution = 128;     // cells along an axis of contracted space
   double decay = 0.8;       // of a cell's remembered density each time it is drawn again
-  double threshold = 0.01;  // opacity of one marching step at which a cell counts as occupied
+  double threshold = 0.03;  // opacity of one marching step at which a cell counts as occupied
   int warmup_steps = 256;   // training steps during which empty cells are drawn as often as others
   int update_every = 16;    // training steps between updates
 
@@ -48,7 +48,7 @@ class OccupancyGrid {
   double OccupiedFraction() const;
 
   // The state that a checkpoint keeps.
-  std::vector<float>& Density() { return density_; }              // [cells] remembered, -1: never seen
+  std::vector<float>& Density() { return density_; }  // [cells] remembered, -1: never seen
   const std::vector<float>& Density() const { return density_; }
   void Refresh();  // decides from Density() which cells are occupied
 

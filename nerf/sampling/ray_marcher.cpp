@@ -25,12 +25,10 @@ void MarchRay(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, f
   float fraction = 1.0f - jitter;
   while (t < far_distance) {
     const float speed = ContractedSpeed(origin + t * direction, direction);
-    const float dt =
-        std::min(fraction * step / std::max(speed, kSlowest), far_distance - t);
+    const float dt = std::min(fraction * step / std::max(speed, kSlowest), far_distance - t);
     fraction = 1.0f;
     const float middle = t + 0.5f * dt;
-    const Eigen::Vector3f x_in_cube =
-        UnitCubeFromContracted(Contract(origin + middle * direction));
+    const Eigen::Vector3f x_in_cube = UnitCubeFromContracted(Contract(origin + middle * direction));
     if (grid.Occupied(x_in_cube)) {
       out.position.insert(out.position.end(), {x_in_cube[0], x_in_cube[1], x_in_cube[2]});
       out.t.push_back(middle);

@@ -66,8 +66,9 @@ Checkpoint ReadCheckpoint(const std::filesystem::path& path) {
   Header header;
   const Header expected;
   if (bytes.size() < sizeof(Header) || std::memcmp(bytes.data(), expected.magic, 8) != 0) {
-    throw sfm::InputError("{}: is not a checkpoint of this program; train again, or name a run folder",
-                          path.string());
+    throw sfm::InputError(
+        "{}: is not a checkpoint of this program; train again, or name a run folder",
+        path.string());
   }
   std::memcpy(&header, bytes.data(), sizeof(Header));
   if (header.version != kCheckpointVersion) {
@@ -78,8 +79,9 @@ Checkpoint ReadCheckpoint(const std::filesystem::path& path) {
   }
   bytes.erase(0, sizeof(Header));
   if (bytes.size() != header.size || Crc32(bytes) != header.crc) {
-    throw sfm::InputError("{}: is cut short or damaged ({} of {} bytes); train again from the start",
-                          path.string(), bytes.size(), header.size);
+    throw sfm::InputError(
+        "{}: is cut short or damaged ({} of {} bytes); train again from the start", path.string(),
+        bytes.size(), header.size);
   }
   try {
     std::istringstream stream(std::move(bytes));

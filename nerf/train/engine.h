@@ -10,10 +10,10 @@ namespace nerf {
 class OccupancyGrid;
 
 struct StepResult {
-  double loss = 0;            // mean over rays and channels
-  double squared_error = 0;   // mean over rays and channels, for PSNR
-  std::int64_t marched = 0;   // samples in occupied cells
-  std::int64_t shaded = 0;    // samples of them that light reaches, on which gradients were taken
+  double loss = 0;           // mean over rays and channels
+  double squared_error = 0;  // mean over rays and channels, for PSNR
+  std::int64_t marched = 0;  // samples in occupied cells
+  std::int64_t shaded = 0;   // samples of them that light reaches, on which gradients were taken
 };
 
 // Evaluates rays, with gradients or without. Two engines, one meaning: LibTorchEngine composes

@@ -109,10 +109,10 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
   out.field = field_->forward(positions, directions, ray);
   ScaleGradients(out.field, t, gradient_scaling_.full_distance);
 
-  out.pixels = RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong),
-                            out.field.sigma, out.field.radiance,
-                            TensorOf(out.samples.dt, {size}, dtype), t,
-                            TensorOf(rays.background, {count, 3}, dtype));
+  out.pixels =
+      RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong), out.field.sigma,
+                   out.field.radiance, TensorOf(out.samples.dt, {size}, dtype), t,
+                   TensorOf(rays.background, {count, 3}, dtype));
   return out;
 }
 
@@ -127,9 +127,9 @@ RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
                          to_vector(out.pixels.depth), out.marched + out.samples.Size()};
   for (std::size_t r = 0; r < result.depth.size(); ++r) {
     if (result.opacity[r] > 0) {
-      result.depth[r] = std::clamp(result.depth[r] / result.opacity[r],
-                                   static_cast<float>(march_.near_distance),
-                                   static_cast<float>(march_.far_distance));
+      result.depth[r] =
+          std::clamp(result.depth[r] / result.opacity[r], static_cast<float>(march_.near_distance),
+                     static_cast<float>(march_.far_distance));
     }
   }
   return result;

@@ -46,9 +46,8 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   model.field = std::make_shared<RadianceField>(config.encoding, config.field, scene.encoding,
                                                 config.train.seed);
   model.grid = std::make_shared<OccupancyGrid>(config.occupancy, config.march.StepLength());
-  model.engine =
-      std::make_shared<LibTorchEngine>(model.field, model.grid, config.march, config.loss,
-                                                  config.gradient_scaling);
+  model.engine = std::make_shared<LibTorchEngine>(model.field, model.grid, config.march,
+                                                  config.loss, config.gradient_scaling);
   return model;
 }
 

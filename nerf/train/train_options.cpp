@@ -21,7 +21,8 @@ void OptimizerOptions::Check() const {
                           learning_rate);
   }
   if (!(beta1 >= 0 && beta1 < 1 && beta2 >= 0 && beta2 < 1)) {
-    throw sfm::InputError("config: optimizer.beta1 {} and beta2 {} must be in [0, 1)", beta1, beta2);
+    throw sfm::InputError("config: optimizer.beta1 {} and beta2 {} must be in [0, 1)", beta1,
+                          beta2);
   }
   if (!(epsilon > 0)) throw sfm::InputError("config: optimizer.epsilon must be above 0");
   if (!(weight_decay >= 0)) {
@@ -48,9 +49,8 @@ double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, st
   const double rise = schedule.warmup_steps > 0
                           ? std::min(1.0, static_cast<double>(step + 1) / schedule.warmup_steps)
                           : 1.0;
-  const double progress =
-      std::clamp(static_cast<double>(step) / static_cast<double>(std::max<std::int64_t>(1, steps)),
-                 0.0, 1.0);
+  const double progress = std::clamp(
+      static_cast<double>(step) / static_cast<double>(std::max<std::int64_t>(1, steps)), 0.0, 1.0);
   const double fall = 0.5 * (1.0 + std::cos(std::numbers::pi * progress));
   return rise * (schedule.final_factor + (1.0 - schedule.final_factor) * fall);
 }

@@ -17,15 +17,15 @@ struct OptimizerOptions {
   double beta1 = 0.9;
   double beta2 = 0.99;
   double epsilon = 1e-15;
-  double weight_decay = 1e-6;   // of the networks' weights, not of the hash table
+  double weight_decay = 1e-6;  // of the networks' weights, not of the hash table
 
   void Check() const;
 };
 
 // A photograph alone could be painted on a pane of glass right before its camera: samples near the
-// camera get gradients from many rays, those where the scene is from few. Scaling the gradients of a
-// sample at distance t by min(1, (t / full_distance)^2) undoes that.
-// Source: Philip and Deschaintre 2023, "Floaters No More".
+// camera get gradients from many rays, those where the scene is from few. Scaling the gradients of
+// a sample at distance t by min(1, (t / full_distance)^2) undoes that. Source: Philip and
+// Deschaintre 2023, "Floaters No More".
 struct GradientScalingOptions {
   double full_distance = 1.0;  // normalized scene units; 0: no scaling
 
@@ -43,11 +43,11 @@ double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, st
 
 struct TrainOptions {
   std::int64_t steps = 5000;
-  std::int64_t samples_per_batch = 65536;   // samples with gradients that a step aims at
+  std::int64_t samples_per_batch = 32768;  // samples with gradients that a step aims at
   std::int64_t max_rays_per_batch = 8192;
   std::uint64_t seed = 1;
-  std::int64_t checkpoint_every = 1000;     // steps
-  std::int64_t validate_every = 500;        // steps
+  std::int64_t checkpoint_every = 500;  // steps
+  std::int64_t validate_every = 250;    // steps
 
   void Check() const;
 };

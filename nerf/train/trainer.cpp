@@ -100,7 +100,8 @@ struct Trainer::State {
   Adam optimizer;
   TargetBatch validation;
 
-  // What a checkpoint keeps beside parameters and optimiser; random numbers need no more than these.
+  // What a checkpoint keeps beside parameters and optimiser; random numbers need no more than
+  // these.
   std::int64_t step = 0;
   std::int64_t rays_per_batch;
   double training_seconds = 0;
@@ -128,15 +129,15 @@ void Trainer::State::AdaptBatch(std::int64_t shaded) {
   const double ratio = static_cast<double>(Options().samples_per_batch) /
                        static_cast<double>(std::max<std::int64_t>(1, shaded));
   const double wanted = static_cast<double>(rays_per_batch) * std::clamp(ratio, 0.5, 2.0);
-  rays_per_batch =
-      std::clamp<std::int64_t>(std::llround(wanted), 1, Options().max_rays_per_batch);
+  rays_per_batch = std::clamp<std::int64_t>(std::llround(wanted), 1, Options().max_rays_per_batch);
 }
 
 double Trainer::State::Validate() {
   const RenderOutput out = model.engine->Render(validation.rays);
   double sum = 0;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {
-    const double error = std::clamp(out.rgb[i], 0.0f, 1.0f) - std::clamp(validation.rgb[i], 0.0f, 1.0f);
+    const double error =
+        std::clamp(out.rgb[i], 0.0f, 1.0f) - std::clamp(validation.rgb[i], 0.0f, 1.0f);
     sum += error * error;
   }
   return Psnr(sum / static_cast<double>(out.rgb.size()));
@@ -178,7 +179,8 @@ Trainer::Trainer(const Config& config, const SceneFacts& scene, const Dataset& d
   KeepVisibleCells(*state_->model.grid, data.train);
 }
 
-Trainer::Trainer(const Checkpoint& checkpoint, const Dataset& data, const std::filesystem::path& run)
+Trainer::Trainer(const Checkpoint& checkpoint, const Dataset& data,
+                 const std::filesystem::path& run)
     : state_(std::make_unique<State>(ModelFromCheckpoint(checkpoint), data, run)) {
   try {
     state_->optimizer.LoadFrom(checkpoint.tensors);
@@ -228,8 +230,8 @@ TrainSummary Trainer::Run(const std::atomic<bool>& stop) {
     if (last || s.step % options.checkpoint_every == 0) s.Save();
     const std::string psnr =
         s.validation_psnr > 0 ? fmt::format("  val {:.2f} dB", s.validation_psnr) : "";
-    progress.Update(s.step, fmt::format("loss {:.5f}  {:.1f}k rays/s{}", shown_loss,
-                                        shown_rate / 1e3, psnr));
+    progress.Update(
+        s.step, fmt::format("loss {:.5f}  {:.1f}k rays/s{}", shown_loss, shown_rate / 1e3, psnr));
   }
   progress.Finish();
   const bool finished = s.step >= options.steps;

@@ -10,7 +10,7 @@
 namespace nerf {
 
 struct TrainSummary {
-  bool finished = false;        // false: stopped on request, saved, to be resumed
+  bool finished = false;  // false: stopped on request, saved, to be resumed
   std::int64_t step = 0;
   double training_seconds = 0;  // without validation and saving
   double validation_psnr = 0;   // dB, on a fixed sample of validation pixels; 0: none held out

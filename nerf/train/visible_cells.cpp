@@ -23,9 +23,8 @@ double HalfAngle(const sfm::Camera& camera) {
   for (int i = 0; i < kPointsOnAnEdge; ++i) {
     const double u = camera.width * i / (kPointsOnAnEdge - 1.0);
     const double v = camera.height * i / (kPointsOnAnEdge - 1.0);
-    for (const Eigen::Vector2d& pixel :
-         {Eigen::Vector2d(u, 0), Eigen::Vector2d(u, camera.height), Eigen::Vector2d(0, v),
-          Eigen::Vector2d(camera.width, v)}) {
+    for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(u, 0), Eigen::Vector2d(u, camera.height),
+                                         Eigen::Vector2d(0, v), Eigen::Vector2d(camera.width, v)}) {
       const auto direction = DirectionFromPixel(camera, pixel);
       // A border beyond the lens' reach says nothing of the angle: then the whole sphere counts.
       if (!direction) return std::numbers::pi;

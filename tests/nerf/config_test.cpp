@@ -40,13 +40,16 @@ TEST(Config, AssignmentsChangeSingleKeys) {
 }
 
 TEST(Config, AnUnknownKeyIsNamed) {
-  EXPECT_THAT(ErrorOf("base", {"train.stps=5"}), AllOf(HasSubstr("train.stps"), HasSubstr("steps")));
+  EXPECT_THAT(ErrorOf("base", {"train.stps=5"}),
+              AllOf(HasSubstr("train.stps"), HasSubstr("steps")));
   EXPECT_THAT(ErrorOf("base", {"nonsense=5"}), HasSubstr("nonsense"));
 }
 
 TEST(Config, AWrongTypeIsNamed) {
-  EXPECT_THAT(ErrorOf("base", {"train.steps=many"}), HasSubstr("train.steps must be a whole number"));
-  EXPECT_THAT(ErrorOf("base", {"train.steps=1.5"}), HasSubstr("train.steps must be a whole number"));
+  EXPECT_THAT(ErrorOf("base", {"train.steps=many"}),
+              HasSubstr("train.steps must be a whole number"));
+  EXPECT_THAT(ErrorOf("base", {"train.steps=1.5"}),
+              HasSubstr("train.steps must be a whole number"));
   EXPECT_THAT(ErrorOf("base", {"loss.kind=3"}), HasSubstr("loss.kind must be string"));
   EXPECT_THAT(ErrorOf("base", {"train=3"}), HasSubstr("train must be an object"));
 }

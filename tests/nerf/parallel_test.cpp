@@ -25,8 +25,9 @@ TEST(ParallelFor, DoesNothingForNothing) {
 }
 
 TEST(ParallelFor, HandsOnAnException) {
-  EXPECT_THROW(ParallelFor(100, 1, [](std::int64_t, std::int64_t) { throw std::logic_error("no"); }),
-               std::logic_error);
+  EXPECT_THROW(
+      ParallelFor(100, 1, [](std::int64_t, std::int64_t) { throw std::logic_error("no"); }),
+      std::logic_error);
 }
 
 }  // namespace

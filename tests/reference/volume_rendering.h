@@ -8,7 +8,7 @@ namespace nerf::reference {
 // One ray, composited the slow and obvious way in long double.
 struct Ray {
   std::vector<long double> sigma, dt, t;
-  std::vector<long double> radiance;           // [S,3]
+  std::vector<long double> radiance;  // [S,3]
   long double background[3] = {0, 0, 0};
 };
 

@@ -63,7 +63,9 @@ TEST_F(AtomicFile, AnOutputFolderThatIsAFileIsRefused) {
   EXPECT_NO_THROW(MakeOutputFolder(folder_ / "b" / "c"));
 }
 
-TEST_F(AtomicFile, AMissingFileIsNamed) { EXPECT_THROW(ReadWholeFile(folder_ / "none"), InputError); }
+TEST_F(AtomicFile, AMissingFileIsNamed) {
+  EXPECT_THROW(ReadWholeFile(folder_ / "none"), InputError);
+}
 
 }  // namespace
 }  // namespace sfm

@@ -204,6 +204,15 @@ TEST_F(ColmapRunner, ChangesRepeatTheStepsThatDependOnThem) {
               ElementsAre("mapper"));
 }
 
+TEST_F(ColmapRunner, MissingProgramLeavesNothingBehind) {
+  WritePhotos(6);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", photos_.path().c_str(), 1);
+  EXPECT_THAT(Error(), HasSubstr("not installed"));
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_FALSE(fs::exists(Workspace()));
+}
+
 TEST_F(ColmapRunner, OtherPeoplesFilesAreNotTouched) {
   WritePhotos(6);
   fs::create_directories(Workspace() / "images");

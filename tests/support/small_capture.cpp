@@ -32,11 +32,11 @@ SmallCapture MakeSmallCapture(int views, int width, int height) {
 }
 
 Config SmallConfig() {
-  return LoadConfig("base", {"encoding.levels=8", "encoding.log2_table_size=14",
-                             "encoding.max_resolution=256", "field.hidden_width=32",
-                             "occupancy.resolution=48", "march.steps_per_unit=48",
-                             "train.samples_per_batch=16384", "train.steps=200",
-                             "train.checkpoint_every=100", "train.validate_every=100"});
+  return LoadConfig(
+      "base",
+      {"encoding.log2_table_size=13", "encoding.max_resolution=256", "field.hidden_width=32",
+       "occupancy.resolution=48", "march.steps_per_unit=48", "train.samples_per_batch=16384",
+       "train.steps=200", "train.checkpoint_every=100", "train.validate_every=100"});
 }
 
 }  // namespace nerf::test

@@ -102,7 +102,8 @@ TEST_F(LoadedDataset, AnImageOfAnotherSizeThanItsCameraIsLeftOut) {
   WriteImage(posed_.images[2].path, Image(5, 4, 3));
   const Dataset data = Load();
   ASSERT_EQ(data.skipped.size(), 1u);
-  EXPECT_THAT(data.skipped[0], testing::AllOf(testing::HasSubstr("5x4"), testing::HasSubstr("4x4")));
+  EXPECT_THAT(data.skipped[0],
+              testing::AllOf(testing::HasSubstr("5x4"), testing::HasSubstr("4x4")));
 }
 
 TEST_F(LoadedDataset, LinearAndDisplayReferredImagesAreNotMixed) {

@@ -34,7 +34,8 @@ TEST(PixelSampler, EachPixelIsEquallyLikelyAndGoesThroughItsCentre) {
   std::map<std::array<int, 3>, int> count;
   for (std::int64_t r = 0; r < batch.rays.Size(); ++r) {
     const int v = static_cast<int>(batch.rgb[3 * r]);
-    const auto x = static_cast<int>(batch.rgb[3 * r + 1] * 16), y = static_cast<int>(batch.rgb[3 * r + 2] * 16);
+    const auto x = static_cast<int>(batch.rgb[3 * r + 1] * 16),
+               y = static_cast<int>(batch.rgb[3 * r + 2] * 16);
     ++count[{v, x, y}];
     EXPECT_EQ(batch.rays.origin[3 * r], static_cast<float>(v));
     const auto d = DirectionFromPixel(views[v].camera, {x + 0.5, y + 0.5});

@@ -80,15 +80,18 @@ TEST(TruncatedExp, NeitherValueNorGradientOverflowsOrDies) {
   EXPECT_TRUE((y.slice(0, 1) >= y.slice(0, 0, -1)).all().item<bool>());
 }
 
-// Integrals over the sphere of products of two harmonics are 1 for the same and 0 for different ones.
+// Integrals over the sphere of products of two harmonics are 1 for the same and 0 for different
+// ones.
 TEST(DirectionEncoding, SphericalHarmonicsAreOrthonormal) {
   torch::manual_seed(1);
   constexpr std::int64_t kCount = 400000;
-  const torch::Tensor d = torch::nn::functional::normalize(
-      torch::randn({kCount, 3}, torch::kDouble), torch::nn::functional::NormalizeFuncOptions().dim(1));
+  const torch::Tensor d =
+      torch::nn::functional::normalize(torch::randn({kCount, 3}, torch::kDouble),
+                                       torch::nn::functional::NormalizeFuncOptions().dim(1));
   const torch::Tensor y = EncodeDirections(d);
   const torch::Tensor gram = 4 * M_PI * y.t().mm(y) / static_cast<double>(kCount);
-  const double worst = (gram - torch::eye(kDirectionFeatures, torch::kDouble)).abs().max().item<double>();
+  const double worst =
+      (gram - torch::eye(kDirectionFeatures, torch::kDouble)).abs().max().item<double>();
   EXPECT_LT(worst, 0.02);
 }
 

@@ -38,9 +38,9 @@ TEST(AdamStep, AnEntryWithoutGradientStaysWhereItIs) {
 }
 
 TEST(AdamStep, TellsWhenAGradientIsNotFinite) {
-  for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
-                          std::numeric_limits<float>::infinity(),
-                          -std::numeric_limits<float>::infinity()}) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+        -std::numeric_limits<float>::infinity()}) {
     for (std::size_t at = 0; at < 37; ++at) {
       std::vector<float> parameter(37, 1.0f), gradient(37, 0.1f), first(37), second(37);
       gradient[at] = bad;

@@ -14,6 +14,7 @@ namespace {
 HashGridOptions SmallGrid() {
   HashGridOptions options;
   options.levels = 6;
+  options.features = 2;
   options.log2_table_size = 10;
   options.base_resolution = 4;
   options.max_resolution = 128;
@@ -113,7 +114,9 @@ TEST(HashEncoding, MatchesInterpolationAxisByAxis) {
           const auto entry = HashGridIndex(level, c[0] + x, c[1] + y, c[2] + z);
           return table[2 * (level.offset + entry) + feature];
         };
-        const auto along_x = [&](int y, int z) { return std::lerp(at(0, y, z), at(1, y, z), f[0]); };
+        const auto along_x = [&](int y, int z) {
+          return std::lerp(at(0, y, z), at(1, y, z), f[0]);
+        };
         const auto along_y = [&](int z) { return std::lerp(along_x(0, z), along_x(1, z), f[1]); };
         EXPECT_NEAR(encoded[2 * l + feature], std::lerp(along_y(0), along_y(1), f[2]), 1e-10);
       }

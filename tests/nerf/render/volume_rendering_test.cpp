@@ -50,8 +50,8 @@ TEST(RenderVolume, AnEmptyRayShowsItsBackground) {
 
 TEST(RenderVolume, ABatchWithoutRaysIsEmpty) {
   const auto none = [](at::IntArrayRef shape) { return torch::empty(shape); };
-  const VolumeRendering out = RenderVolume(torch::zeros({1}, torch::kLong), none({0}),
-                                           none({0, 3}), none({0}), none({0}), none({0, 3}));
+  const VolumeRendering out = RenderVolume(torch::zeros({1}, torch::kLong), none({0}), none({0, 3}),
+                                           none({0}), none({0}), none({0, 3}));
   EXPECT_EQ(out.rgb.sizes(), at::IntArrayRef({0, 3}));
 }
 

@@ -6,8 +6,8 @@ namespace nerf {
 namespace {
 
 TEST(Contraction, IsTheIdentityInsideTheUnitBall) {
-  for (const Eigen::Vector3f& x : {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(0.5f, -0.2f, 0.1f),
-                                   Eigen::Vector3f(0, 1, 0)}) {
+  for (const Eigen::Vector3f& x :
+       {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(0.5f, -0.2f, 0.1f), Eigen::Vector3f(0, 1, 0)}) {
     EXPECT_EQ(Contract(x), x);
   }
 }

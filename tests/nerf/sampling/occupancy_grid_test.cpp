@@ -40,7 +40,9 @@ TEST(OccupancyGrid, FindsMatterAndForgetsTheRest) {
 
 TEST(OccupancyGrid, FindsMatterThatAppearsLater) {
   OccupancyGrid grid(Options(), 0.01f);
-  const auto nothing = [](std::span<const float> p) { return std::vector<float>(p.size() / 3, 0.0f); };
+  const auto nothing = [](std::span<const float> p) {
+    return std::vector<float>(p.size() / 3, 0.0f);
+  };
   for (int step = 0; step < 20; ++step) grid.Update(step, 7, nothing);
   for (int step = 20; step < 80; ++step) grid.Update(step, 7, Ball);
   EXPECT_TRUE(grid.Occupied({0.5f, 0.5f, 0.5f}));
@@ -50,9 +52,8 @@ TEST(OccupancyGrid, WhatNoCameraSeesStaysEmpty) {
   OccupancyGrid grid(Options(), 0.01f);
   grid.KeepVisible([](const Eigen::Vector3f& centre, float) { return centre[0] < 0.5f; });
   for (int step = 0; step < 40; ++step) {
-    grid.Update(step, 7, [](std::span<const float> p) {
-      return std::vector<float>(p.size() / 3, 100.0f);
-    });
+    grid.Update(step, 7,
+                [](std::span<const float> p) { return std::vector<float>(p.size() / 3, 100.0f); });
   }
   EXPECT_TRUE(grid.Occupied({0.4f, 0.5f, 0.5f}));
   EXPECT_FALSE(grid.Occupied({0.6f, 0.5f, 0.5f}));

@@ -58,10 +58,12 @@ TEST(MarchRays, SamplesLieOnTheirRayInContractedSpace) {
   const PackedSamples samples = MarchRays(rays, grid, options);
   for (std::int64_t i = 0; i < samples.Size(); ++i) {
     const std::int64_t r = samples.ray[i];
-    const Eigen::Vector3f x = Eigen::Map<const Eigen::Vector3f>(&rays.origin[3 * r]) +
-                              samples.t[i] * Eigen::Map<const Eigen::Vector3f>(&rays.direction[3 * r]);
+    const Eigen::Vector3f x =
+        Eigen::Map<const Eigen::Vector3f>(&rays.origin[3 * r]) +
+        samples.t[i] * Eigen::Map<const Eigen::Vector3f>(&rays.direction[3 * r]);
     const Eigen::Vector3f expected = UnitCubeFromContracted(Contract(x));
-    EXPECT_LT((Eigen::Map<const Eigen::Vector3f>(&samples.position[3 * i]) - expected).norm(), 1e-5f);
+    EXPECT_LT((Eigen::Map<const Eigen::Vector3f>(&samples.position[3 * i]) - expected).norm(),
+              1e-5f);
   }
 }
 

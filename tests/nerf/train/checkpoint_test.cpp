@@ -38,7 +38,8 @@ class CheckpointFile : public testing::Test {
 TEST_F(CheckpointFile, ComesBack) {
   const Checkpoint read = ReadCheckpoint(path_);
   EXPECT_EQ(read.meta.at("step"), 42);
-  EXPECT_TRUE(torch::equal(read.tensors.at("field.a.weight"), checkpoint_.tensors["field.a.weight"]));
+  EXPECT_TRUE(
+      torch::equal(read.tensors.at("field.a.weight"), checkpoint_.tensors["field.a.weight"]));
   EXPECT_EQ(read.tensors.at("count").item<int>(), 7);
 }
 

@@ -69,7 +69,8 @@ TEST(LibTorchEngine, GradientsOfTheWholePathMatchCentralDifferences) {
   };
   loss();
   std::map<std::string, torch::Tensor> gradients;
-  for (auto& p : f.field->named_parameters()) gradients[p.key()] = p.value().grad().clone().view(-1);
+  for (auto& p : f.field->named_parameters())
+    gradients[p.key()] = p.value().grad().clone().view(-1);
   for (auto& p : f.field->named_parameters()) {
     SCOPED_TRACE(p.key());
     torch::Tensor flat = p.value().detach().view(-1);
@@ -140,7 +141,8 @@ TEST(LibTorchEngine, ANonFiniteParameterIsReportedWithRayAndStage) {
     f.engine->AccumulateGradients(f.batch);
     FAIL();
   } catch (const NonFiniteError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("ray "), testing::HasSubstr("colour")));
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("ray "), testing::HasSubstr("colour")));
   }
 }
 

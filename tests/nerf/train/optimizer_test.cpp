@@ -85,7 +85,8 @@ TEST(LearningRate, RisesThenFallsToItsFinalValue) {
   EXPECT_NEAR(LearningRateFactor(schedule, 10, 1000), 1.0, 1e-3);
   EXPECT_NEAR(LearningRateFactor(schedule, 1000, 1000), 0.1, 1e-9);
   for (int step = 10; step < 1000; ++step) {
-    EXPECT_GT(LearningRateFactor(schedule, step, 1000), LearningRateFactor(schedule, step + 1, 1000));
+    EXPECT_GT(LearningRateFactor(schedule, step, 1000),
+              LearningRateFactor(schedule, step + 1, 1000));
   }
 }
 
