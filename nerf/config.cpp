@@ -22,8 +22,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GradientScalingOptions, full_distance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OptimizerOptions, learning_rate, beta1, beta2, epsilon,
                                    weight_decay)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScheduleOptions, warmup_steps, final_factor)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, steps, samples_per_batch, max_rays_per_batch, seed,
-                                   checkpoint_every, validate_every)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, steps, coarse_to_fine_steps, samples_per_batch,
+                                   max_rays_per_batch, seed, checkpoint_every, validate_every)
 namespace kernels {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HashGridOptions, levels, features, log2_table_size,
                                    base_resolution, max_resolution)
@@ -39,7 +39,7 @@ constexpr char kParentKey[] = "parent";
 bool SameKind(const json& base, const json& value) {
   if (base.is_number_float()) return value.is_number();
   if (base.is_number_integer()) {
-    return value.is_number_integer() && !(base.is_number_unsigned() && value < 0);
+    return value.is_number_integer();
   }
   return base.type() == value.type();
 }

@@ -136,7 +136,7 @@ class Reader {
           frame.Where("file_path"), name, stored->width, stored->height, camera.width,
           camera.height);
     }
-    image.upright_by_exif = fitted->upright_by_exif;
+    image.upright_by_exif = frame.Bool("upright_by_exif").value_or(fitted->upright_by_exif);
     image.camera = CameraIndex(fitted->camera);
     result_.images.push_back(std::move(image));
   }

@@ -57,6 +57,8 @@ void WriteTransformsJson(const PosedImages& posed, const fs::path& file) {
     if (!one_camera) frame = JsonFromCamera(posed.cameras[image.camera]);
     frame["file_path"] = PathFrom(folder, image.path);
     frame["transform_matrix"] = JsonFromPose(image.world_from_camera);
+    // Our own key: where turning leaves the size as it is, the size cannot tell.
+    if (image.upright_by_exif) frame["upright_by_exif"] = true;
     if (const char* list = SplitListName(image.split)) lists[list].push_back(frame["file_path"]);
     frames.push_back(std::move(frame));
   }

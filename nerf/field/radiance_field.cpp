@@ -1,11 +1,16 @@
 #include "nerf/field/radiance_field.h"
 
+#include <algorithm>
+
 #include "nerf/field/activations.h"
 #include "nerf/field/direction_encoding.h"
 #include "nerf/sampling/random.h"
 
 namespace nerf {
 namespace {
+
+// Levels that show at no detail at all: cells of an eighth and less of the unit ball.
+constexpr double kCoarsestLevels = 2.0;
 
 // Starts thin: with density 1 a ray would be opaque before it has crossed the scene.
 constexpr double kLogDensityBias = -1.0;
@@ -45,8 +50,22 @@ RadianceField::RadianceField(const kernels::HashGridOptions& grid, const FieldOp
                                    std::make_shared<Mlp>(ColorWidths(options), Mix64(seed + 2)));
 }
 
+void RadianceField::SetDetail(double detail) { detail_ = std::clamp(detail, 0.0, 1.0); }
+
+// The encoded positions with the levels beyond the detail faded to 0.
+torch::Tensor RadianceField::Encode(const torch::Tensor& positions) {
+  const torch::Tensor encoded = hash_encoding_->forward(positions);
+  if (detail_ >= 1) return encoded;
+  const kernels::HashGridLayout& layout = hash_encoding_->Layout();
+  const auto levels = static_cast<std::int64_t>(layout.levels.size());
+  const double active = kCoarsestLevels + detail_ * (static_cast<double>(levels) - kCoarsestLevels);
+  const torch::Tensor weight =
+      torch::clamp(active - torch::arange(levels, encoded.options()), 0.0, 1.0);
+  return encoded * weight.repeat_interleave(layout.features);
+}
+
 torch::Tensor RadianceField::ContractedDensity(const torch::Tensor& positions) {
-  const torch::Tensor out = density_network_->forward(hash_encoding_->forward(positions));
+  const torch::Tensor out = density_network_->forward(Encode(positions));
   return ActivateDensity(out.select(1, 0));
 }
 
@@ -56,10 +75,10 @@ torch::Tensor RadianceField::Density(const torch::Tensor& positions) {
 
 FieldOutput RadianceField::forward(const torch::Tensor& positions, const torch::Tensor& directions,
                                    const torch::Tensor& ray) {
-  const torch::Tensor out = density_network_->forward(hash_encoding_->forward(positions));
+  const torch::Tensor out = density_network_->forward(Encode(positions));
   const torch::Tensor geometry = out.slice(1, 1);
   // Encoded once a ray, then dealt to the ray's samples.
-  const torch::Tensor view = EncodeDirections(directions).index_select(0, ray);
+  const torch::Tensor view = (detail_ * EncodeDirections(directions)).index_select(0, ray);
   const torch::Tensor color = color_network_->forward(torch::cat({geometry, view}, 1));
   return {ActivateDensity(out.select(1, 0)) * RadialShrinkage(positions),
           encoding_ == ColorEncoding::kSrgb ? torch::sigmoid(color) : TruncatedExp(color)};

@@ -40,10 +40,20 @@ class RadianceField : public torch::nn::Module {
   FieldOutput forward(const torch::Tensor& positions, const torch::Tensor& directions,
                       const torch::Tensor& ray);
 
+  // How much detail the field may show, from 0 (the coarsest levels alone, no dependence on the
+  // direction) to 1 (everything, the state of a new field). Shape is found while only coarse
+  // positions can explain the photographs; fine levels and directions could explain each of them by
+  // itself. Source: the frequency regularisation of Yang et al. 2023 (FreeNeRF), on hash levels.
+  void SetDetail(double detail);
+  double Detail() const { return detail_; }
+
   torch::Dtype Dtype() const;
 
  private:
+  torch::Tensor Encode(const torch::Tensor& positions);
+
   ColorEncoding encoding_;
+  double detail_ = 1;
   int geometry_features_;
   std::shared_ptr<HashEncoding> hash_encoding_;
   std::shared_ptr<Mlp> density_network_;  // encoded position -> log density, geometry features

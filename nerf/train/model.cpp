@@ -54,6 +54,7 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
 void AddModel(const Model& model, Checkpoint& checkpoint) {
   checkpoint.meta["config"] = JsonFromConfig(model.config);
   checkpoint.meta["scene"] = JsonFromScene(model.scene);
+  checkpoint.meta["detail"] = model.field->Detail();
   for (const auto& parameter : model.field->named_parameters()) {
     checkpoint.tensors[kFieldPrefix + parameter.key()] = parameter.value();
   }
@@ -69,6 +70,7 @@ Model ModelFromCheckpoint(const Checkpoint& checkpoint) {
     for (const auto& parameter : model.field->named_parameters()) {
       CopyTensor(checkpoint.tensors, kFieldPrefix + parameter.key(), parameter.value());
     }
+    model.field->SetDetail(checkpoint.meta.at("detail"));
     std::vector<float>& density = model.grid->Density();
     CopyTensor(checkpoint.tensors, kOccupancyName,
                torch::from_blob(density.data(), {static_cast<std::int64_t>(density.size())}));

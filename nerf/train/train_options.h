@@ -27,7 +27,7 @@ struct OptimizerOptions {
 // a sample at distance t by min(1, (t / full_distance)^2) undoes that. Source: Philip and
 // Deschaintre 2023, "Floaters No More".
 struct GradientScalingOptions {
-  double full_distance = 1.0;  // normalized scene units; 0: no scaling
+  double full_distance = 2.0;  // normalized scene units; 0: no scaling
 
   void Check() const;
 };
@@ -43,6 +43,7 @@ double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, st
 
 struct TrainOptions {
   std::int64_t steps = 5000;
+  std::int64_t coarse_to_fine_steps = 1000;  // steps until the field shows full detail
   std::int64_t samples_per_batch = 32768;  // samples with gradients that a step aims at
   std::int64_t max_rays_per_batch = 8192;
   std::uint64_t seed = 1;

@@ -110,6 +110,10 @@ struct Trainer::State {
 
 StepResult Trainer::State::Step() {
   const TrainOptions& options = Options();
+  if (options.coarse_to_fine_steps > 0) {
+    model.field->SetDetail(static_cast<double>(step) /
+                           static_cast<double>(options.coarse_to_fine_steps));
+  }
   try {
     if (step % model.config.occupancy.update_every == 0) {
       model.engine->UpdateOccupancy(step, options.seed);

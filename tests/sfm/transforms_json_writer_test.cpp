@@ -100,6 +100,18 @@ TEST(TransformsJsonWriter, OneCameraIsWrittenOnceAndPathsAreRelative) {
   EXPECT_EQ(ReadTransformsJson(file).cameras, posed.cameras);
 }
 
+// Of a square photograph, or one that stands on its head, the size cannot tell.
+TEST(TransformsJsonWriter, APhotographTurnedByExifStaysTurned) {
+  const ScratchFolder scratch;
+  PosedImages posed = PosedWith({{CameraModel::kPinhole, 8, 8, {9, 9, 4, 4}}}, scratch);
+  for (const bool upright_by_exif : {true, false}) {
+    posed.images[0].upright_by_exif = upright_by_exif;
+    WriteTransformsJson(posed, scratch.path() / "transforms.json");
+    EXPECT_EQ(ReadTransformsJson(scratch.path() / "transforms.json").images[0].upright_by_exif,
+              upright_by_exif);
+  }
+}
+
 TEST(TransformsJsonWriter, UnwritableFolderIsNamedAndNothingIsLeft) {
   const ScratchFolder scratch;
   const PosedImages posed = PosedWith({{CameraModel::kSimplePinhole, 4, 4, {1, 2, 2}}}, scratch);

@@ -1,0 +1,187 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "sfm/atomic_file.h"
+#include "tests/nerf/commands/run_program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+using test::RunNerf;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+// A small capture with true poses, made once.
+class TrainCommand : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::ScratchFolder;
+    const auto made =
+        RunNerf("sample " + Path("sample") + " --views 10 --width 48 --height 36 --samples 1");
+    ASSERT_EQ(made.exit_status, 0) << made.output;
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static std::string Path(const std::string& name) { return (folder_->path() / name).string(); }
+  static std::string Poses() { return Path("sample/truth/transforms.json"); }
+
+  // A run of 200 tiny steps with a checkpoint in the middle.
+  static std::string Arguments(const std::string& run) {
+    return fmt::format(
+        "train {} -o {} --threads 2 --set train.steps=200 --set train.checkpoint_every=100 "
+        "--set train.samples_per_batch=2048 --set train.validate_every=50 "
+        "--set encoding.log2_table_size=12 --set field.hidden_width=16 "
+        "--set occupancy.resolution=32 --set march.steps_per_unit=32 "
+        "--set train.coarse_to_fine_steps=50",
+        Poses(), Path(run));
+  }
+
+  // A refusal: one line, exit status 2, naming what is wrong.
+  static void ExpectRefused(const std::string& arguments,
+                            const testing::Matcher<std::string>& says) {
+    const auto result = RunNerf(arguments);
+    EXPECT_EQ(result.exit_status, 2) << result.output;
+    EXPECT_THAT(result.output, says);
+    EXPECT_THAT(result.output, Not(HasSubstr("terminate")));
+  }
+
+  static test::ScratchFolder* folder_;
+};
+test::ScratchFolder* TrainCommand::folder_ = nullptr;
+
+TEST_F(TrainCommand, AKilledRunResumesBitForBit) {
+  const auto straight = RunNerf(Arguments("straight"));
+  ASSERT_EQ(straight.exit_status, 0) << straight.output;
+
+  const std::string command = std::string(NERF_PROGRAM) + " " + Arguments("killed");
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c", ("exec " + command + " >/dev/null 2>&1").c_str(), nullptr);
+    _exit(127);
+  }
+  const fs::path checkpoint = Path("killed/checkpoint.nerf");
+  int status = 0;
+  while (!fs::exists(checkpoint) && waitpid(child, &status, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "the run ended before it could be killed";
+
+  const auto resumed = RunNerf("train --resume --threads 2 -o " + Path("killed"));
+  ASSERT_EQ(resumed.exit_status, 0) << resumed.output;
+  // The parameters are the same when all that they render is (torch_tests compares them bit by
+  // bit).
+  const auto render = [](const std::string& run) {
+    EXPECT_EQ(RunNerf("render " + Path(run) + " --format exr").exit_status, 0);
+    return sfm::ReadWholeFile(Path(run + "/renders/held-out/.._sample_images_view_000.exr"));
+  };
+  EXPECT_EQ(render("straight"), render("killed"));
+
+  // What stands now is not overwritten by accident.
+  ExpectRefused(Arguments("killed"), AllOf(HasSubstr("--resume"), HasSubstr("killed")));
+  ExpectRefused("train --resume -o " + Path("killed") + " --set train.steps=5", HasSubstr("--set"));
+}
+
+TEST_F(TrainCommand, RendersAndEvaluates) {
+  ASSERT_EQ(RunNerf(Arguments("run")).exit_status, 0);
+  const auto eval = RunNerf("eval " + Path("run"));
+  EXPECT_EQ(eval.exit_status, 0) << eval.output;
+  EXPECT_THAT(eval.output, AllOf(HasSubstr("view_000.png"), HasSubstr("mean")));
+  EXPECT_TRUE(fs::exists(Path("run/eval/contact_sheet.png")));
+
+  EXPECT_EQ(RunNerf("render " + Path("run") + " --depth --opacity").exit_status, 0);
+  for (const char* name : {"png", "depth.exr", "depth.png", "opacity.png"}) {
+    bool found = false;
+    for (const auto& entry : fs::directory_iterator(Path("run/renders/held-out"))) {
+      found = found || entry.path().string().ends_with(name);
+    }
+    EXPECT_TRUE(found) << name;
+  }
+  const auto film = RunNerf("render " + Path("run") + " --path orbit --frames 3");
+  EXPECT_EQ(film.exit_status, 0) << film.output;
+  EXPECT_TRUE(fs::exists(Path("run/renders/orbit/00002.png")));
+  EXPECT_TRUE(fs::exists(Path("run/renders/orbit/film.mp4")));
+  folder_->Write("pose.json",
+                 R"({"transform_matrix": [[1,0,0,0],[0,0,-1,-3],[0,1,0,1],[0,0,0,1]], "fov": 40})");
+  EXPECT_EQ(
+      RunNerf("render --pose " + Path("pose.json") + " --format exr " + Path("run")).exit_status,
+      0);
+  EXPECT_TRUE(fs::exists(Path("run/renders/pose/pose.exr")));
+  ExpectRefused("render " + Path("run") + " --image none.png", HasSubstr("none.png"));
+}
+
+TEST_F(TrainCommand, StaysQuietWhereThereIsNoTerminal) {
+  const auto result = RunNerf(Arguments("quiet"));
+  EXPECT_LE(std::ranges::count(result.output, '\n'), 6) << result.output;
+  EXPECT_THAT(result.output, Not(HasSubstr("\r")));
+}
+
+TEST_F(TrainCommand, BadInputGetsOneClearLine) {
+  ExpectRefused("train /no/such/folder -o " + Path("x"), HasSubstr("/no/such/folder"));
+  fs::create_directories(Path("empty"));
+  ExpectRefused("train " + Path("empty") + " -o " + Path("x"), HasSubstr("empty"));
+  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --config fsat", HasSubstr("fsat"));
+  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --set train.stps=1",
+                HasSubstr("train.stps"));
+  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --set train.steps=no",
+                HasSubstr("train.steps"));
+  ExpectRefused("train " + Poses() + " -o /proc/nope", HasSubstr("/proc/nope"));
+  ExpectRefused("train " + Poses() + " --no-such-flag", HasSubstr("no-such-flag"));
+  ExpectRefused("train --resume -o " + Path("x"), HasSubstr("checkpoint"));
+  ExpectRefused("train " + Poses() + " --threads -1 -o " + Path("x"), HasSubstr("--threads"));
+  EXPECT_FALSE(fs::exists(Path("x")));
+}
+
+TEST_F(TrainCommand, ABrokenCheckpointIsNamed) {
+  folder_->Write("broken/checkpoint.nerf", "NERFCKPT but not much more");
+  ExpectRefused("eval " + Path("broken"), HasSubstr("broken/checkpoint.nerf"));
+  ExpectRefused("render " + Path("broken"), HasSubstr("broken/checkpoint.nerf"));
+}
+
+TEST_F(TrainCommand, BrokenPosesAreNamed) {
+  folder_->Write("bad/transforms.json", R"({"frames": [)");
+  ExpectRefused("train " + Path("bad") + " -o " + Path("x"), HasSubstr("bad/transforms.json"));
+  auto poses = nlohmann::json::parse(sfm::ReadWholeFile(Poses()));
+  for (auto& frame : poses["frames"]) {
+    frame["file_path"] = Path("sample/images/") +
+                         fs::path(frame["file_path"].get<std::string>()).filename().string();
+  }
+  auto mirrored = poses;
+  for (int i = 0; i < 4; ++i) {
+    double& entry = *mirrored["frames"][3]["transform_matrix"][i][0].get_ptr<double*>();
+    entry = -entry;
+  }
+  folder_->Write("mirrored/transforms.json", mirrored.dump());
+  ExpectRefused("train " + Path("mirrored") + " -o " + Path("x"), HasSubstr("frames[3]"));
+}
+
+TEST_F(TrainCommand, ATruncatedPhotographIsNamedAndSkipped) {
+  fs::copy(Path("sample"), Path("cut"), fs::copy_options::recursive);
+  fs::resize_file(Path("cut/images/view_003.png"), 200);
+  const auto result =
+      RunNerf("train " + Path("cut/truth/transforms.json") + " -o " + Path("cut-run") +
+              " --set train.steps=2 --set train.samples_per_batch=512");
+  EXPECT_EQ(result.exit_status, 0) << result.output;
+  EXPECT_THAT(result.output,
+              AllOf(HasSubstr("view_003.png"), HasSubstr("1 images could not be read")));
+}
+
+}  // namespace
+}  // namespace nerf
