@@ -38,15 +38,13 @@ constexpr char kParentKey[] = "parent";
 // A whole number may stand where a real one is meant, never the other way round.
 bool SameKind(const json& base, const json& value) {
   if (base.is_number_float()) return value.is_number();
-  if (base.is_number_integer()) {
-    return value.is_number_integer();
-  }
+  if (base.is_number_integer()) return value.is_number_unsigned();  // none of ours is negative
   return base.type() == value.type();
 }
 
 const char* KindName(const json& base) {
   if (base.is_number_float()) return "a number";
-  if (base.is_number_integer()) return "a whole number";
+  if (base.is_number_integer()) return "a whole number, 0 or more";
   return base.type_name();
 }
 

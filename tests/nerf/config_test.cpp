@@ -58,7 +58,7 @@ TEST(Config, AValueOutOfRangeIsNamed) {
   EXPECT_THAT(ErrorOf("base", {"train.steps=0"}), HasSubstr("train.steps"));
   EXPECT_THAT(ErrorOf("base", {"encoding.features=3"}), HasSubstr("encoding.features"));
   EXPECT_THAT(ErrorOf("base", {"encoding.levels=4294967297"}), HasSubstr("encoding/levels"));
-  EXPECT_THAT(ErrorOf("base", {"train.seed=-1"}), HasSubstr("train/seed"));
+  EXPECT_THAT(ErrorOf("base", {"train.seed=-1"}), HasSubstr("train.seed must be a whole number, 0 or more"));
   EXPECT_THAT(ErrorOf("base", {"loss.kind=l7"}), HasSubstr("l7"));
 }
 
@@ -84,7 +84,7 @@ TEST(Config, FilesBuildOnTheirParents) {
 }
 
 TEST(Config, JsonComesBack) {
-  const Config config = LoadConfig("accurate", {"train.seed=9223372036854775807"});
+  const Config config = LoadConfig("accurate", {"train.seed=18446744073709551615"});
   EXPECT_EQ(JsonFromConfig(ConfigFromJson(JsonFromConfig(config), "test")), JsonFromConfig(config));
 }
 
