@@ -38,7 +38,10 @@ constexpr char kParentKey[] = "parent";
 // A whole number may stand where a real one is meant, never the other way round.
 bool SameKind(const json& base, const json& value) {
   if (base.is_number_float()) return value.is_number();
-  if (base.is_number_integer()) return value.is_number_unsigned();  // none of ours is negative
+  if (base.is_number_integer()) {  // none of ours is negative
+    return value.is_number_unsigned() ||
+           (value.is_number_integer() && value.get<std::int64_t>() >= 0);
+  }
   return base.type() == value.type();
 }
 
