@@ -4,7 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <string_view>
 
 #include "nerf/commands/commands.h"
 #include "sfm/input_error.h"
@@ -36,6 +39,9 @@ int main(int argc, char** argv) {
   CLI::App app{"nerf: radiance fields from photographs, on an ordinary CPU"};
   app.set_version_flag("--version", NERF_VERSION);
   app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& e) {
+    return fmt::format("error: {}; --help shows what there is\n", e.what());
+  });
   app.footer("nerf COMMAND --help shows each command with examples.");
   try {
     nerf::AddTrainCommand(app);
@@ -47,11 +53,15 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : kExitBadInput;
+  } catch (const std::filesystem::filesystem_error& e) {
+    spdlog::error("{}: {}; choose another path", e.path1().string(), e.code().message());
+    return kExitBadInput;
   } catch (const sfm::InputError& e) {
     spdlog::error("{}", e.what());
     return kExitBadInput;
   } catch (const std::exception& e) {
-    spdlog::critical("{}", e.what());
+    // LibTorch adds a stack trace behind its first line.
+    spdlog::critical("{}", std::string_view(e.what()).substr(0, std::strcspn(e.what(), "\n")));
     return kExitInternal;
   }
 }

@@ -38,6 +38,29 @@ void ExposeAndEncode(OIIO::ImageBuf& linear) {
   linear.set_pixels(linear.roi(), OIIO::TypeFloat, values.data());
 }
 
+// Turned as EXIF says. Not ImageBufAlgo::reorient, which in OpenImageIO 2.4 takes 5 for 7.
+OIIO::ImageBuf Upright(const OIIO::ImageBuf& stored, int orientation) {
+  namespace algo = OIIO::ImageBufAlgo;
+  switch (orientation) {
+    case 2:
+      return algo::flop(stored);
+    case 3:
+      return algo::rotate180(stored);
+    case 4:
+      return algo::flip(stored);
+    case 5:
+      return algo::transpose(stored);
+    case 6:
+      return algo::rotate90(stored);
+    case 7:
+      return algo::rotate180(algo::transpose(stored));
+    case 8:
+      return algo::rotate270(stored);
+    default:
+      return stored;
+  }
+}
+
 void WriteStandIn(const Photo& photo, const fs::path& target) {
   OIIO::ImageBuf source(photo.path.string());
   if (!source.read(0, 0, true, OIIO::TypeFloat)) {
@@ -48,7 +71,9 @@ void WriteStandIn(const Photo& photo, const fs::path& target) {
   OIIO::ImageBuf image =
       OIIO::ImageBufAlgo::channels(source, static_cast<int>(channels.size()), channels);
   if (linear) ExposeAndEncode(image);
-  if (photo.orientation != 1) image = OIIO::ImageBufAlgo::reorient(image);
+  if (image.roi() != image.roi_full()) image = OIIO::ImageBufAlgo::cut(image, image.roi_full());
+  image = Upright(image, photo.orientation);
+  image.specmod().attribute("Orientation", 1);
   image.specmod().attribute("CompressionQuality", 95);
   image.specmod().attribute("oiio:ColorSpace", "sRGB");
   image.set_write_format(OIIO::TypeUInt8);

@@ -14,9 +14,12 @@ namespace fs = std::filesystem;
 namespace sfm {
 
 bool HasImageEnding(const fs::path& file) {
-  static constexpr std::array<std::string_view, 13> kEndings = {
-      ".jpg",  ".jpeg", ".png", ".tif", ".tiff", ".exr", ".hdr",
-      ".webp", ".bmp",  ".tga", ".ppm", ".jp2",  ".dpx"};
+  // What OpenImageIO reads, but for films, volumes and textures. Which of them it can depends on
+  // how it was built; a photograph that it cannot open is named and skipped.
+  static constexpr std::array<std::string_view, 28> kEndings = {
+      ".jpg",  ".jpeg", ".png", ".tif", ".tiff", ".exr", ".hdr", ".webp", ".bmp",  ".tga",
+      ".ppm",  ".pgm",  ".pnm", ".jp2", ".j2k",  ".dpx", ".gif", ".psd",  ".heic", ".heif",
+      ".avif", ".dng",  ".cr2", ".nef", ".arw",  ".orf", ".rw2", ".raf"};
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -45,8 +48,9 @@ std::optional<ImageSize> ReadImageSize(const fs::path& file) {
     return std::nullopt;
   }
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width <= 0 || spec.height <= 0) return std::nullopt;
-  ImageSize size{spec.width, spec.height, spec.get_int_attribute("Orientation", 1)};
+  // An image cropped to where it has pixels is as large as its whole frame.
+  if (spec.full_width <= 0 || spec.full_height <= 0) return std::nullopt;
+  ImageSize size{spec.full_width, spec.full_height, spec.get_int_attribute("Orientation", 1)};
   if (size.orientation < 1 || size.orientation > 8) size.orientation = 1;
   return size;
 }

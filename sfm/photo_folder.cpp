@@ -46,7 +46,9 @@ std::optional<std::string> Check(const fs::path& path, Photo& photo) {
   if (!input) return FirstLine(OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide ||
-      spec.nchannels < 1 || spec.nchannels > kMaxChannels || spec.tile_height > kMaxSide) {
+      spec.full_width < 1 || spec.full_height < 1 || spec.full_width > kMaxSide ||
+      spec.full_height > kMaxSide || spec.nchannels < 1 || spec.nchannels > kMaxChannels ||
+      spec.tile_height > kMaxSide) {
     return fmt::format("its header claims {}x{} pixels of {} channels", spec.width, spec.height,
                        spec.nchannels);
   }
@@ -54,8 +56,8 @@ std::optional<std::string> Check(const fs::path& path, Photo& photo) {
   photo.name = path.filename().string();
   photo.path = path;
   photo.format = input->format_name();
-  photo.width = spec.width;
-  photo.height = spec.height;
+  photo.width = spec.full_width;
+  photo.height = spec.full_height;
   const int orientation = spec.get_int_attribute("Orientation", 1);
   photo.orientation = orientation >= 1 && orientation <= 8 ? orientation : 1;
   photo.eight_bit = spec.format == OIIO::TypeUInt8;

@@ -5,7 +5,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -67,9 +66,19 @@ Eigen::Isometry3d ReadPose(const JsonFields& frame) {
   return WorldFromOpenCVCamera(RigidFromMatrix(matrix, where));
 }
 
+void RequireNew(std::map<std::string, std::size_t>& frame_of, const std::string& value,
+                std::size_t frame, const std::string& where) {
+  const auto [earlier, is_new] = frame_of.emplace(value, frame);
+  if (is_new) return;
+  throw InputError("{} '{}' is that of frames[{}] too; remove one of the two", where, value,
+                   earlier->second);
+}
+
 // Gathers the frames of one or several files.
 class Reader {
  public:
+  explicit Reader(AbsentImages absent) : absent_(absent) {}
+
   void ReadFile(const fs::path& file, Split split) {
     const nlohmann::json root = ReadJsonFile(file);
     const JsonFields fields(root, file.string() + ": ");
@@ -78,20 +87,19 @@ class Reader {
       throw InputError("{} is missing or empty; is this a transforms.json?",
                        fields.Where("frames"));
     }
-    std::map<std::string, std::size_t> frame_of_name;
+    std::map<std::string, std::size_t> frame_of_path, frame_of_name;
     for (std::size_t i = 0; i < frames->size(); ++i) {
       const JsonFields frame((*frames)[i], fmt::format("{}: frames[{}].", file.string(), i));
       const auto file_path = frame.String("file_path");
       if (!file_path || file_path->empty()) {
         throw InputError("{} is missing", frame.Where("file_path"));
       }
-      const std::string name = NameFromPath(*file_path);
-      const auto [earlier, is_new] = frame_of_name.emplace(name, i);
-      if (!is_new) {
-        throw InputError("{} '{}' is that of frames[{}] too; remove one of the two",
-                         frame.Where("file_path"), name, earlier->second);
-      }
-      AddFrame(file, frame, fields, name, split);
+      const std::string path = NameFromPath(*file_path);
+      // Our own key: what the file that this one was made from called the image.
+      const std::string name = NameFromPath(frame.String("source_name").value_or(path));
+      RequireNew(frame_of_path, path, i, frame.Where("file_path"));
+      RequireNew(frame_of_name, name, i, frame.Where("source_name"));
+      AddFrame(file, frame, fields, path, name, split);
     }
     MarkSplits(fields);
   }
@@ -113,17 +121,22 @@ class Reader {
 
  private:
   void AddFrame(const fs::path& file, const JsonFields& frame, const JsonFields& global,
-                const std::string& name, Split split) {
+                const std::string& path_in_file, const std::string& name, Split split) {
     PosedImage image;
     image.name = name;
     image.split = split;
     image.world_from_camera = ReadPose(frame);
     // In an earlier file: train comes first, and what is trained on cannot be held out.
-    if (!names_.insert(name).second) return;
-    const auto path = FindImage(file.parent_path() / name);
+    if (!name_of_path_.emplace(path_in_file, name).second) return;
+    const auto path = FindImage(file.parent_path() / path_in_file);
     const auto stored = path ? ReadImageSize(*path) : std::nullopt;
     if (!stored) {
-      result_.missing.push_back(path ? name + " (not a readable image)" : name);
+      result_.missing.push_back(path ? path_in_file + " (not a readable image)" : path_in_file);
+      if (absent_ == AbsentImages::kKeep) {
+        image.path = file.parent_path() / path_in_file;
+        image.camera = CameraIndex(CameraFromJson(frame, global, {}));
+        result_.images.push_back(std::move(image));
+      }
       return;
     }
     image.path = *path;
@@ -133,7 +146,7 @@ class Reader {
       throw InputError(
           "{}: the image '{}' is {}x{} pixels, which is no scaled copy of the {}x{} that w and h "
           "say; mend w and h, or give the images that the file was made for",
-          frame.Where("file_path"), name, stored->width, stored->height, camera.width,
+          frame.Where("file_path"), path_in_file, stored->width, stored->height, camera.width,
           camera.height);
     }
     image.upright_by_exif = frame.Bool("upright_by_exif").value_or(fitted->upright_by_exif);
@@ -156,11 +169,12 @@ class Reader {
       if (!list) continue;
       for (const nlohmann::json& entry : *list) {
         if (!entry.is_string()) throw InputError("{} must be a list of names", fields.Where(key));
-        const std::string name = NameFromPath(entry.get<std::string>());
-        if (!names_.contains(name)) {
-          throw InputError("{}: '{}' is the file_path of no frame", fields.Where(key), name);
+        const std::string path = NameFromPath(entry.get<std::string>());
+        const auto frame = name_of_path_.find(path);
+        if (frame == name_of_path_.end()) {
+          throw InputError("{}: '{}' is the file_path of no frame", fields.Where(key), path);
         }
-        split_of_name.emplace(name, split);
+        split_of_name.emplace(frame->second, split);
       }
     }
     if (split_of_name.empty()) return;
@@ -170,15 +184,16 @@ class Reader {
     }
   }
 
+  AbsentImages absent_;
   PosedImages result_;
-  std::set<std::string> names_;
+  std::map<std::string, std::string> name_of_path_;
   std::map<std::tuple<CameraModel, int, int, std::vector<double>>, int> index_of_camera_;
 };
 
 }  // namespace
 
-PosedImages ReadTransformsJson(const fs::path& file) {
-  Reader reader;
+PosedImages ReadTransformsJson(const fs::path& file, AbsentImages absent) {
+  Reader reader(absent);
   if (file.filename() != "transforms_train.json") {
     reader.ReadFile(file, Split::kUnspecified);
     return std::move(reader).Result(file);

@@ -20,12 +20,16 @@ namespace sfm {
 // nerfstudio docs "Data conventions"; Mildenhall et al. 2020 (Blender).
 // Throws InputError with file, frame and key when something is missing, of the wrong type, not
 // finite, not rigid, or named twice, and when no image is there.
-PosedImages ReadTransformsJson(const std::filesystem::path& file);
+//   absent  what becomes of images without a readable file. Kept ones, of a file that says their
+//           size, have poses and lenses to render from; they are in `missing` too.
+enum class AbsentImages { kLeaveOut, kKeep };
+PosedImages ReadTransformsJson(const std::filesystem::path& file,
+                               AbsentImages absent = AbsentImages::kLeaveOut);
 
 // Writes the same in nerfstudio's flavour, so that ReadTransformsJson gives the images, lenses,
-// poses and splits back: file_path relative to the file's folder, per-frame lenses only where there
-// is more than one, all digits of a double. Sparse points have no place in it.
-// The file appears whole or not at all. Throws InputError when it cannot be written.
+// poses and splits back, names too: file_path relative to the file's folder, per-frame lenses only
+// where there is more than one, all digits of a double. Sparse points have no place in it. The file
+// appears whole or not at all. Throws InputError when it cannot be written.
 void WriteTransformsJson(const PosedImages& posed, const std::filesystem::path& file);
 
 }  // namespace sfm

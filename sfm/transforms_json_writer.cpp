@@ -57,7 +57,9 @@ void WriteTransformsJson(const PosedImages& posed, const fs::path& file) {
     if (!one_camera) frame = JsonFromCamera(posed.cameras[image.camera]);
     frame["file_path"] = PathFrom(folder, image.path);
     frame["transform_matrix"] = JsonFromPose(image.world_from_camera);
-    // Our own key: where turning leaves the size as it is, the size cannot tell.
+    // Our own keys: the path changes with the folder written into, the name may not; and where
+    // turning leaves the size as it is, the size cannot tell.
+    if (image.name != frame["file_path"]) frame["source_name"] = image.name;
     if (image.upright_by_exif) frame["upright_by_exif"] = true;
     if (const char* list = SplitListName(image.split)) lists[list].push_back(frame["file_path"]);
     frames.push_back(std::move(frame));

@@ -42,6 +42,9 @@ struct Score {
   double psnr = 0, ssim = 0, seconds = 0;
 };
 
+// Of the contact sheet: whoever looks at pictures looks at no more, and memory stays bounded.
+constexpr std::size_t kMostRows = 50;
+
 sfm::Split SplitFromName(const std::string& name) {
   if (name == "train") return sfm::Split::kTrain;
   return name == "validation" ? sfm::Split::kValidation : sfm::Split::kTest;
@@ -64,7 +67,7 @@ Score MeanOf(const std::vector<Score>& scores) {
 }
 
 nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& arguments,
-                              const std::vector<Score>& scores) {
+                              const std::vector<Score>& scores, std::size_t left_out) {
   const Score mean = MeanOf(scores);
   nlohmann::json images = nlohmann::json::array();
   for (const Score& s : scores) {
@@ -78,6 +81,7 @@ nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& argumen
           {"psnr", JsonNumber(mean.psnr)},
           {"ssim", mean.ssim},
           {"seconds_per_frame", mean.seconds},
+          {"left_out", left_out},
           {"images", images}};
 }
 
@@ -129,16 +133,23 @@ void RunEval(const EvalArguments& arguments) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     const double psnr = Psnr(truth, view.rgb);
     scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds.count()});
-    rows.push_back({fmt::format("{}  {:.2f} dB", image->name, psnr), truth, view.rgb});
+    if (rows.size() < kMostRows) {
+      rows.push_back({fmt::format("{}  {:.2f} dB", image->name, psnr), truth, view.rgb});
+    }
     progress.Update(static_cast<std::int64_t>(scores.size()), fmt::format("{:.2f} dB", psnr));
   }
   progress.Finish();
+  if (scores.size() < images.size()) {
+    spdlog::warn("{} of {} images could not be read; the mean is of the others",
+                 images.size() - scores.size(), images.size());
+  }
   if (scores.empty()) {
     throw sfm::InputError("{}: none of the {} images could be read", arguments.run,
                           arguments.split);
   }
 
-  const nlohmann::json result = JsonFromScores(run, arguments, scores);
+  const nlohmann::json result =
+      JsonFromScores(run, arguments, scores, images.size() - scores.size());
   sfm::WriteFileAtomically(output / "eval.json", result.dump(2) + "\n");
   WriteImage(output / "contact_sheet.png", ContactSheet(rows));
   if (arguments.json) {

@@ -59,10 +59,13 @@ struct ShotList {
   std::optional<double> frames_per_second;  // of a film
 };
 
-// "train/r_0.png" -> "train_r_0"
+// "train/r_0.png" -> "train_r_0", "../images/0001.jpg" -> "images_0001"
 std::string FileStem(const std::string& image_name) {
-  std::string stem = fs::path(image_name).replace_extension().generic_string();
-  std::ranges::replace(stem, '/', '_');
+  std::string stem;
+  for (const fs::path& part : fs::path(image_name).replace_extension().relative_path()) {
+    if (part == "..") continue;
+    stem += (stem.empty() ? "" : "_") + part.string();
+  }
   return stem;
 }
 
@@ -101,11 +104,14 @@ ShotList ChooseShots(const OpenedRun& run, const RenderArguments& arguments) {
             "pose",
             {}};
   }
+  const auto& normalized_from_world = run.model.scene.normalized_from_world;
   if (arguments.path == "orbit") {
-    return ShotsOfPath(OrbitPath(run.posed, arguments.frames), "orbit", downscale);
+    return ShotsOfPath(OrbitPath(run.posed, normalized_from_world, arguments.frames), "orbit",
+                       downscale);
   }
   if (arguments.path == "spiral") {
-    return ShotsOfPath(SpiralPath(run.posed, arguments.frames), "spiral", downscale);
+    return ShotsOfPath(SpiralPath(run.posed, normalized_from_world, arguments.frames), "spiral",
+                       downscale);
   }
   if (arguments.path == "training") {
     return ShotsOfPath(TrainingPath(run.posed, arguments.frames), "training", downscale);
@@ -148,6 +154,9 @@ void RunRender(const RenderArguments& arguments) {
   if (arguments.downscale && *arguments.downscale < 1) {
     throw sfm::InputError("--downscale {}: use 1 or more", *arguments.downscale);
   }
+  if (arguments.fps && !(*arguments.fps > 0 && *arguments.fps <= 1000)) {
+    throw sfm::InputError("--fps {}: use more than 0, at most 1000", *arguments.fps);
+  }
   const OpenedRun run = OpenRun(arguments.run);
   const SceneFacts& scene = run.model.scene;
   const ShotList list = ChooseShots(run, arguments);
@@ -179,7 +188,8 @@ void RunRender(const RenderArguments& arguments) {
     return;
   }
   const fs::path film = output / "film.mp4";
-  WriteVideo(output, arguments.fps.value_or(*list.frames_per_second), film);
+  WriteVideo(output, static_cast<int>(list.shots.size()),
+             arguments.fps.value_or(*list.frames_per_second), film);
   fmt::print("{}\n", film.string());
 }
 
@@ -200,8 +210,9 @@ void AddRenderCommand(CLI::App& app) {
   command->add_option("--frames", arguments->frames, "pictures along the path")
       ->capture_default_str();
   command->add_option("--fps", arguments->fps, "frames a second of the film");
-  command->add_option("--downscale", arguments->downscale,
-                      "reduce the camera by this factor [as trained]");
+  command->add_option(
+      "--downscale", arguments->downscale,
+      "reduce the camera by this factor [as trained; 1 for --pose and a path file]");
   command->add_option("--format", arguments->format, "png, jpg, or exr (linear)")
       ->check(CLI::IsMember({"png", "jpg", "exr"}))
       ->capture_default_str();

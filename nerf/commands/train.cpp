@@ -33,6 +33,7 @@ struct TrainArguments {
   std::string input;
   std::string output;
   std::string preset = "balanced";
+  bool preset_given = false;
   std::vector<std::string> assignments;
   std::optional<int> downscale;
   int threads = 0;
@@ -46,7 +47,24 @@ fs::path RunFolder(const TrainArguments& arguments) {
   }
   fs::path name = fs::absolute(arguments.input).lexically_normal();
   if (!name.has_filename()) name = name.parent_path();  // a slash at the end
-  return fs::path("runs") / name.stem();
+  // photos/fox/transforms.json is the fox's.
+  if (name.extension() == ".json") name = name.parent_path();
+  return fs::path("runs") / name.filename();
+}
+
+// A folder is a run's own once it holds a run's config.json. Somebody else's transforms.json there,
+// maybe the very input, is not to be written over.
+void RequireOwnFolder(const fs::path& run) {
+  if (fs::exists(CheckpointPath(run))) {
+    throw sfm::InputError(
+        "{}: holds a run already; add --resume to go on with it, or choose another folder with -o",
+        run.string());
+  }
+  for (const fs::path& file : {PosesPath(run), MetricsPath(run)}) {
+    if (!fs::exists(file) || fs::exists(ConfigPath(run))) continue;
+    throw sfm::InputError("{}: is there already, and not from nerf train; choose another -o",
+                          file.string());
+  }
 }
 
 // "a, b, c and 14 more"
@@ -68,6 +86,10 @@ sfm::PosedImages FindPoses(const fs::path& input, const fs::path& run, int threa
   colmap.threads = threads;
   sfm::ColmapReport report;
   sfm::PosedImages posed = sfm::PosesFromPhotos(location.images, ColmapPath(run), colmap, &report);
+  if (!report.skipped.empty()) {
+    spdlog::warn("{} of {} photographs cannot be read and are left out", report.skipped.size(),
+                 report.skipped.size() + report.photos);
+  }
   double seconds = 0;
   for (const auto& [step, step_seconds] : report.seconds) seconds += step_seconds;
   fmt::print(
@@ -129,13 +151,10 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads)
     assignments.push_back(fmt::format("data.downscale={}", *arguments.downscale));
   }
   const Config config = LoadConfig(arguments.preset, assignments);
-  if (fs::exists(CheckpointPath(run))) {
-    throw sfm::InputError(
-        "{}: holds a run already; add --resume to go on with it, or choose another folder with -o",
-        run.string());
-  }
+  RequireOwnFolder(run);
   sfm::FindInput(arguments.input);  // a wrong input must not leave an empty run behind
   sfm::MakeOutputFolder(run);
+  sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
 
   sfm::PosedImages found = FindPoses(arguments.input, run, threads);
   WarnOfMissing(found);
@@ -143,7 +162,6 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads)
   SceneFacts scene;
   scene.normalized_from_world = sfm::NormalizeScene(found);
   sfm::WriteTransformsJson(found, PosesPath(run));
-  sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
   // Read back, so that a run which resumes starts from the same numbers to the last bit.
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
 
@@ -156,12 +174,17 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads)
 }
 
 void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads) {
-  if (!arguments.assignments.empty() || arguments.downscale) {
+  if (!arguments.assignments.empty() || arguments.downscale || arguments.preset_given) {
     throw sfm::InputError(
-        "--resume goes on with the run's own configuration; leave --set and --downscale away");
+        "--resume goes on with the run's own configuration; leave --config, --set and --downscale "
+        "away");
   }
   const Checkpoint checkpoint = ReadRunCheckpoint(run);
   const Model model = ModelFromCheckpoint(checkpoint);
+  if (const int before = checkpoint.meta.value("threads", threads); before != threads) {
+    spdlog::warn("the run was on {} threads and goes on with {}; sums will round differently",
+                 before, threads);
+  }
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
   WarnOfMissing(posed);
   const Dataset data = Load(posed, model.config.data, model.scene.normalized_from_world);
@@ -178,9 +201,10 @@ void AddTrainCommand(CLI::App& app) {
   command->add_option("input", arguments->input,
                       "folder of photos, COLMAP project, transforms.json, or LLFF folder");
   command->add_option("-o,--output", arguments->output, "run folder [runs/INPUT]");
-  command
-      ->add_option("--config", arguments->preset, "preset (fast, balanced, accurate) or JSON file")
-      ->capture_default_str();
+  auto* preset = command
+                     ->add_option("--config", arguments->preset,
+                                  "preset (fast, balanced, accurate) or JSON file")
+                     ->capture_default_str();
   command->add_option("--set", arguments->assignments, "change one key: block.key=value")
       ->allow_extra_args(false)
       ->take_all();
@@ -188,12 +212,14 @@ void AddTrainCommand(CLI::App& app) {
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--resume", arguments->resume, "go on with the run in -o");
   command->footer(
-      "Ctrl-C saves and leaves; --resume goes on where the run stopped, bit for bit.\n"
+      "Ctrl-C saves and leaves; --resume goes on where the run stopped, bit for bit with the same\n"
+      "number of threads.\n"
       "Examples:\n"
       "  nerf train photos/fox -o runs/fox --downscale 4\n"
       "  nerf train photos/fox/transforms.json --config fast --set train.steps=2000\n"
       "  nerf train --resume -o runs/fox");
-  command->callback([arguments] {
+  command->callback([arguments, preset] {
+    arguments->preset_given = preset->count() > 0;
     const int threads = UseThreads(arguments->threads);
     const fs::path run = RunFolder(*arguments);
     arguments->resume ? ResumeRun(*arguments, run, threads) : StartRun(*arguments, run, threads);

@@ -22,7 +22,11 @@ View MakeView(const sfm::PosedImages& posed, const sfm::PosedImage& image, const
   view.rgba.resize(static_cast<std::size_t>(pixels.width) * pixels.height * 4);
   for (std::size_t i = 0; i < view.rgba.size() / 4; ++i) {
     const float* from = &pixels.pixels[i * pixels.channels];
-    for (int c = 0; c < 3; ++c) view.rgba[4 * i + c] = Eigen::half(from[c]);
+    // The sun in an HDR image is brighter than a half can say.
+    constexpr float kMostHalf = 65504.0f;
+    for (int c = 0; c < 3; ++c) {
+      view.rgba[4 * i + c] = Eigen::half(std::clamp(from[c], -kMostHalf, kMostHalf));
+    }
     view.rgba[4 * i + 3] = Eigen::half(pixels.channels == 4 ? from[3] : 1.0f);
   }
   return view;

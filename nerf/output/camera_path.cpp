@@ -64,10 +64,9 @@ struct Rig {
   bool looks_outwards;
 };
 
-Rig FindRig(const sfm::PosedImages& images) {
-  const sfm::SceneNormalization normalization = sfm::NormalizeScene(images);
-  Rig rig{.focus = normalization.WorldFromNormalized(Vector3d::Zero()),
-          .up = normalization.rotation.transpose() * Vector3d::UnitZ(),
+Rig FindRig(const sfm::PosedImages& images, const sfm::SceneNormalization& normalized_from_world) {
+  Rig rig{.focus = normalized_from_world.WorldFromNormalized(Vector3d::Zero()),
+          .up = normalized_from_world.rotation.transpose() * Vector3d::UnitZ(),
           .looks_outwards = false};
   double towards_focus = 0;
   for (const sfm::PosedImage& image : images.images) {
@@ -152,9 +151,10 @@ Isometry3d LookAt(const Vector3d& center, const Vector3d& target, const Vector3d
   return FromParts(axes, center);
 }
 
-CameraPath OrbitPath(const sfm::PosedImages& images, int frames) {
+CameraPath OrbitPath(const sfm::PosedImages& images,
+                     const sfm::SceneNormalization& normalized_from_world, int frames) {
   Check(images, frames);
-  const Rig rig = FindRig(images);
+  const Rig rig = FindRig(images, normalized_from_world);
   double height = 0;
   double radius = 0;
   for (const sfm::PosedImage& image : images.images) {
@@ -177,9 +177,10 @@ CameraPath OrbitPath(const sfm::PosedImages& images, int frames) {
   });
 }
 
-CameraPath SpiralPath(const sfm::PosedImages& images, int frames) {
+CameraPath SpiralPath(const sfm::PosedImages& images,
+                      const sfm::SceneNormalization& normalized_from_world, int frames) {
   Check(images, frames);
-  const Rig rig = FindRig(images);
+  const Rig rig = FindRig(images, normalized_from_world);
   const Vector3d forward = rig.mean_forward.norm() > 0
                                ? rig.mean_forward.normalized()
                                : images.images.front().world_from_camera.linear().col(2);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sfm/posed_images.h"
+#include "sfm/scene_normalization.h"
 
 namespace nerf {
 
@@ -26,13 +27,15 @@ struct CameraPath {
 // A circle around what the cameras look at (sfm::NormalizeScene), about their mean up, at their
 // mean height and mean distance from that axis; it starts beside the first camera and closes.
 // Cameras that look outwards, as in a room, give a circle that looks outwards.
-CameraPath OrbitPath(const sfm::PosedImages& images, int frames);
+CameraPath OrbitPath(const sfm::PosedImages& images,
+                     const sfm::SceneNormalization& normalized_from_world, int frames);
 
 // Two turns around the mean pose, in and out once, always looking at the focus; it closes. The
 // widths are the 90th percentiles of the cameras' offsets from the mean pose.
 // Source: Mildenhall et al. 2019 (LLFF), render_path_spiral in load_llff.py. The focus is what the
 // cameras look at (sfm::NormalizeScene), seen along the mean viewing direction.
-CameraPath SpiralPath(const sfm::PosedImages& images, int frames);
+CameraPath SpiralPath(const sfm::PosedImages& images,
+                      const sfm::SceneNormalization& normalized_from_world, int frames);
 
 // A smooth path through the cameras in the order of their names, held-out ones left out where the
 // input says which: Catmull-Rom splines through the centres, spherical quadrangle interpolation of

@@ -1,5 +1,6 @@
 #include "nerf/output/video.h"
 
+#include <algorithm>
 #include <boost/process.hpp>
 #include <vector>
 
@@ -19,8 +20,8 @@ std::string FramePattern(const fs::path& folder) {
   return pattern + "/%05d.png";
 }
 
-std::vector<std::string> Arguments(const fs::path& frames_folder, double frames_per_second,
-                                   const fs::path& output) {
+std::vector<std::string> Arguments(const fs::path& frames_folder, int frames,
+                                   double frames_per_second, const fs::path& output) {
   return {"-nostdin",
           "-y",
           "-loglevel",
@@ -31,6 +32,8 @@ std::vector<std::string> Arguments(const fs::path& frames_folder, double frames_
           "0",
           "-i",
           FramePattern(frames_folder),
+          "-frames:v",
+          fmt::format("{}", frames),
           "-vf",
           "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
           "-c:v",
@@ -54,7 +57,8 @@ bool FfmpegIsInstalled() { return !bp::search_path("ffmpeg").empty(); }
 
 std::string FrameName(int index) { return fmt::format("{:05d}.png", index); }
 
-void WriteVideo(const fs::path& frames_folder, double frames_per_second, const fs::path& video) {
+void WriteVideo(const fs::path& frames_folder, int frames, double frames_per_second,
+                const fs::path& video) {
   if (video.extension() != ".mp4") {
     throw sfm::InputError("{}: films are written as .mp4, give that ending", video.string());
   }
@@ -62,9 +66,10 @@ void WriteVideo(const fs::path& frames_folder, double frames_per_second, const f
     throw sfm::InputError("{}: {} frames a second, give more than 0 and at most 1000",
                           video.string(), frames_per_second);
   }
-  if (!fs::exists(frames_folder / FrameName(0))) {
+  for (int i = 0; i < std::max(1, frames); ++i) {
+    if (fs::exists(frames_folder / FrameName(i))) continue;
     throw sfm::InputError("{}: no such frame to make a film of",
-                          (frames_folder / FrameName(0)).string());
+                          (frames_folder / FrameName(i)).string());
   }
   const boost::filesystem::path ffmpeg = bp::search_path("ffmpeg");
   if (ffmpeg.empty()) {
@@ -73,7 +78,8 @@ void WriteVideo(const fs::path& frames_folder, double frames_per_second, const f
   }
   TemporaryFile file(video);
   bp::ipstream complaints;
-  bp::child child(ffmpeg, bp::args = Arguments(frames_folder, frames_per_second, file.path()),
+  bp::child child(ffmpeg,
+                  bp::args = Arguments(frames_folder, frames, frames_per_second, file.path()),
                   bp::std_in<bp::null, bp::std_out> bp::null, bp::std_err > complaints);
   std::string last_line;
   for (std::string line; std::getline(complaints, line);) {

@@ -11,11 +11,11 @@ bool FfmpegIsInstalled();
 // Name of a film's frame on disk, counted from 0: "00012.png".
 std::string FrameName(int index);
 
-// Makes an MP4 (H.264, 4:2:0, playable while it loads) of the frames FrameName(0), FrameName(1),
-// ... in a folder, by way of the ffmpeg program. Odd sizes are padded by a pixel. The file appears
-// whole or not at all. Throws sfm::InputError where ffmpeg is not installed, the ending is not
-// .mp4, there is no first frame, or ffmpeg fails (with its last line).
-void WriteVideo(const std::filesystem::path& frames_folder, double frames_per_second,
+// Makes an MP4 (H.264, 4:2:0, playable while it loads) of the first `frames` frames, FrameName(0),
+// FrameName(1), ... in a folder, by way of the ffmpeg program. Odd sizes are padded by a pixel. The
+// file appears whole or not at all. Throws sfm::InputError where ffmpeg is not installed, the
+// ending is not .mp4, a frame is missing, or ffmpeg fails (with its last line).
+void WriteVideo(const std::filesystem::path& frames_folder, int frames, double frames_per_second,
                 const std::filesystem::path& video);
 
 }  // namespace nerf

@@ -24,7 +24,8 @@ Checkpoint ReadRunCheckpoint(const fs::path& run) {
 
 OpenedRun OpenRun(const fs::path& run) {
   const Checkpoint checkpoint = ReadRunCheckpoint(run);
-  return {ModelFromCheckpoint(checkpoint), sfm::ReadTransformsJson(PosesPath(run)),
+  return {ModelFromCheckpoint(checkpoint),
+          sfm::ReadTransformsJson(PosesPath(run), sfm::AbsentImages::kKeep),
           checkpoint.meta.value("step", std::int64_t{0}),
           checkpoint.meta.value("training_seconds", 0.0)};
 }

@@ -27,6 +27,7 @@ struct OpenedRun {
   double training_seconds = 0;
 };
 
+// The photographs need not be there any more: whoever compares with one will be told.
 // Throws sfm::InputError naming what is missing or damaged.
 OpenedRun OpenRun(const std::filesystem::path& run);
 

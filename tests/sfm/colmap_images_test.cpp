@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sfm/image_files.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/photo_files.h"
 #include "tests/support/scratch_folder.h"
@@ -69,6 +70,67 @@ TEST_F(ColmapImages, PhotosToBeTurnedGetAnUprightCopyAndStayAsTheyAre) {
   EXPECT_EQ(written[0].orientation, 1);
   EXPECT_EQ(written[0].width, 16);
   EXPECT_EQ(Photos()[0].orientation, 6);
+}
+
+// EXIF 2.32, tag Orientation: which edges of the scene the first row and the first column show.
+TEST_F(ColmapImages, EveryOrientationIsTurnedUpright) {
+  constexpr int kWidth = 4, kHeight = 2;
+  struct Case {
+    int orientation;
+    bool transposed, from_right, from_bottom;  // of the stored image, before it is transposed
+  };
+  for (const Case& c :
+       {Case{2, false, true, false}, Case{3, false, true, true}, Case{4, false, false, true},
+        Case{5, true, false, false}, Case{6, true, false, true}, Case{7, true, true, true},
+        Case{8, true, true, false}}) {
+    SCOPED_TRACE(c.orientation);
+    const ScratchFolder folder, target;
+    OIIO::ImageSpec spec(kWidth, kHeight, 3, OIIO::TypeUInt8);
+    spec.attribute("Orientation", c.orientation);
+    std::vector<unsigned char> stored(3 * kWidth * kHeight);
+    for (int i = 0; i < kWidth * kHeight; ++i) stored[3 * i] = static_cast<unsigned char>(30 * i);
+    for (const char* name : {"a.tif", "b.tif"}) {
+      const auto output = OIIO::ImageOutput::create((folder.path() / name).string());
+      ASSERT_TRUE(output && output->open((folder.path() / name).string(), spec));
+      ASSERT_TRUE(output->write_image(OIIO::TypeUInt8, stored.data()));
+      ASSERT_TRUE(output->close());
+    }
+    const auto photos = CheckPhotos(ListPhotos(folder.path())).photos;
+    WriteColmapImages(photos, PlanColmapImages(photos), target.path() / "images");
+    OIIO::ImageBuf image((target.path() / "images/a.tif.png").string());
+    ASSERT_TRUE(image.read());
+    ASSERT_EQ(image.spec().width, c.transposed ? kHeight : kWidth);
+    for (int y = 0; y < image.spec().height; ++y) {
+      for (int x = 0; x < image.spec().width; ++x) {
+        const int column = c.transposed ? y : x, row = c.transposed ? x : y;
+        const int from = (c.from_bottom ? kHeight - 1 - row : row) * kWidth +
+                         (c.from_right ? kWidth - 1 - column : column);
+        EXPECT_NEAR(255 * image.getchannel(x, y, 0, 0), 30 * from, 0.6) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST_F(ColmapImages, ACroppedExrIsAsLargeAsItsFrame) {
+  OIIO::ImageSpec spec(10, 6, 3, OIIO::TypeHalf);
+  spec.x = 4;
+  spec.y = 2;
+  spec.full_width = 32;
+  spec.full_height = 16;
+  const std::vector<float> pixels(3 * 60, 1.0f);
+  for (const char* name : {"a.exr", "b.exr"}) {
+    const std::string file = (photos_.path() / name).string();
+    const auto output = OIIO::ImageOutput::create(file);
+    ASSERT_TRUE(output && output->open(file, spec));
+    ASSERT_TRUE(output->write_image(OIIO::TypeFloat, pixels.data()));
+    ASSERT_TRUE(output->close());
+  }
+  const auto photos = Photos();
+  EXPECT_EQ(photos[0].width, 32);
+  EXPECT_EQ(ReadImageSize(photos[0].path)->height, 16);
+  WriteColmapImages(photos, PlanColmapImages(photos), Target());
+  EXPECT_NEAR(MeanRed(Target() / "a.exr.png", 4, 14, 2, 8), 255, 1);
+  EXPECT_NEAR(MeanRed(Target() / "a.exr.png", 15, 32, 0, 16), 0, 1);
 }
 
 TEST_F(ColmapImages, DeepAndFloatPhotosGetAnEightBitStandIn) {

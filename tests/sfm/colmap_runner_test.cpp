@@ -305,7 +305,7 @@ TEST(ColmapOptions, UnknownValuesAreNamedWithTheMend) {
 }
 
 // The installed COLMAP on a few real photographs, small.
-TEST(ColmapRunnerForReal, NeighbouringPhotosAreRegistered) {
+TEST(ColmapRunnerForReal, NeighbouringPhotosOfTheFoxAreRegistered) {
   const ScratchFolder photos;
   const ScratchFolder out;
   for (const char* name : {"0001.jpg", "0002.jpg", "0003.jpg", "0004.jpg", "0006.jpg"}) {

@@ -49,7 +49,7 @@ TEST(PhotoFolder, PhotosAreSortedByNameAndOtherFilesLeftOut) {
   EXPECT_EQ(folder.photos[1].height, 10);
 }
 
-TEST(PhotoFolder, RealJpegCutAnywhereIsFound) {
+TEST(PhotoFolder, JpegOfTheFoxCutAnywhereIsFound) {
   const ScratchFolder scratch;
   const std::string whole = FoxBytes();
   ASSERT_GT(whole.size(), 100000u);
@@ -68,7 +68,7 @@ TEST(PhotoFolder, RealJpegCutAnywhereIsFound) {
   EXPECT_EQ(folder.skipped[3].reason, "is cut short");
 }
 
-TEST(PhotoFolder, WhatAPhoneAppendsToAJpegIsNoFault) {
+TEST(PhotoFolder, WhatAPhoneAppendsToTheFoxsJpegIsNoFault) {
   const ScratchFolder scratch;
   scratch.Write("motion.jpg", FoxBytes() + std::string(5000, 'v'));
   scratch.Write("plain.jpg", FoxBytes());
@@ -124,8 +124,8 @@ TEST(PhotoFolder, UnusableFoldersAreNamedWithTheMend) {
   EXPECT_THAT(error(scratch.Write("file.jpg", "x")), HasSubstr("is a file"));
   fs::create_directory(scratch.path() / "empty");
   EXPECT_THAT(error(scratch.path() / "empty"), HasSubstr("holds no photographs; give"));
-  scratch.Write("phone/a.HEIC", "x");
-  EXPECT_THAT(error(scratch.path() / "phone"), HasSubstr("(but .HEIC files)"));
+  scratch.Write("phone/a.MOV", "x");
+  EXPECT_THAT(error(scratch.path() / "phone"), HasSubstr("(but .MOV files)"));
   EXPECT_THAT(error(scratch.path()), HasSubstr("holds one photograph, file.jpg"));
 }
 

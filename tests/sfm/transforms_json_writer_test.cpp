@@ -54,6 +54,7 @@ TEST(TransformsJsonWriter, EveryCameraModelSplitAndPoseSurvivesTheRoundTrip) {
   const PosedImages back = ReadTransformsJson(file);
   ASSERT_EQ(back.images.size(), posed.images.size());
   for (std::size_t i = 0; i < back.images.size(); ++i) {
+    EXPECT_EQ(back.images[i].name, posed.images[i].name) << "whatever folder the file lies in";
     EXPECT_TRUE(fs::equivalent(back.images[i].path, posed.images[i].path));
     EXPECT_EQ(back.images[i].split, posed.images[i].split);
     EXPECT_TRUE(back.images[i].world_from_camera.linear().isApprox(

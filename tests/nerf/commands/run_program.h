@@ -13,10 +13,12 @@ struct ProgramResult {
   std::string output;  // standard output and standard error
 };
 
-// Runs the built program with the shell's words in `arguments`, as a person types them.
-inline ProgramResult RunNerf(const std::string& arguments) {
+// Runs the built program with the shell's words in `arguments`, as a person types them, after the
+// shell commands in `before`.
+inline ProgramResult RunNerf(const std::string& arguments, const std::string& before = "") {
   ProgramResult result;
-  std::FILE* pipe = popen((std::string(NERF_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+  const std::string command = before + NERF_PROGRAM + " " + arguments + " 2>&1";
+  std::FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return result;
   std::array<char, 4096> buffer{};
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {

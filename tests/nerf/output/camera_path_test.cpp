@@ -80,6 +80,15 @@ double LongestStep(const CameraPath& path) {
   return longest;
 }
 
+CameraPath Orbit(const sfm::PosedImages& posed, int frames) {
+  return OrbitPath(
+      posed, posed.images.empty() ? sfm::SceneNormalization() : sfm::NormalizeScene(posed), frames);
+}
+CameraPath Spiral(const sfm::PosedImages& posed, int frames) {
+  return SpiralPath(
+      posed, posed.images.empty() ? sfm::SceneNormalization() : sfm::NormalizeScene(posed), frames);
+}
+
 TEST(LookAt, PutsTheTargetAheadAndUpUpwards) {
   const Isometry3d pose = LookAt({1, 2, 3}, {1, 7, 3}, Vector3d::UnitZ());
   EXPECT_LT((pose.inverse() * Vector3d(1, 7, 3) - Vector3d(0, 0, 5)).norm(), 1e-12);
@@ -94,7 +103,7 @@ TEST(LookAt, WorksAlongUp) {
 }
 
 TEST(OrbitPath, StaysOnTheCirclesRadiusAndHeightAndLooksAtTheTarget) {
-  const CameraPath path = OrbitPath(Ring(9), 40);
+  const CameraPath path = Orbit(Ring(9), 40);
   ASSERT_EQ(path.poses.size(), 40);
   ExpectRotations(path);
   for (const PathPose& pose : path.poses) {
@@ -108,7 +117,7 @@ TEST(OrbitPath, StaysOnTheCirclesRadiusAndHeightAndLooksAtTheTarget) {
 
 TEST(OrbitPath, StartsAtTheFirstCameraAndCloses) {
   const sfm::PosedImages ring = Ring(9);
-  const CameraPath path = OrbitPath(ring, 40);
+  const CameraPath path = Orbit(ring, 40);
   EXPECT_LT((Center(path.poses[0]) - ring.images[0].world_from_camera.translation()).norm(), 1e-6);
   EXPECT_NEAR(LongestStep(path), 2 * 3 * std::sin(kPi / 40), 1e-6);
 }
@@ -119,13 +128,13 @@ TEST(OrbitPath, LooksOutwardsWhereTheCamerasDo) {
     const Vector3d out(std::cos(kPi * i / 4), std::sin(kPi * i / 4), 0);
     Add(posed, std::to_string(i), LookAt(out, 2 * out, Vector3d::UnitZ()));
   }
-  for (const PathPose& pose : OrbitPath(posed, 12).poses) {
+  for (const PathPose& pose : Orbit(posed, 12).poses) {
     EXPECT_GT(Forward(pose).dot(Center(pose)), 0.9);
   }
 }
 
 TEST(OrbitPath, TakesTheFirstLensWithoutItsDistortion) {
-  const sfm::Camera camera = OrbitPath(Ring(5), 3).poses[2].camera;
+  const sfm::Camera camera = Orbit(Ring(5), 3).poses[2].camera;
   EXPECT_EQ(camera.model, sfm::CameraModel::kPinhole);
   EXPECT_EQ(camera.width, 80);
   EXPECT_EQ(camera.height, 60);
@@ -133,13 +142,13 @@ TEST(OrbitPath, TakesTheFirstLensWithoutItsDistortion) {
 }
 
 TEST(OrbitPath, CountsSeconds) {
-  const CameraPath path = OrbitPath(Ring(5), 4);
+  const CameraPath path = Orbit(Ring(5), 4);
   EXPECT_DOUBLE_EQ(path.poses[0].seconds, 0);
   EXPECT_DOUBLE_EQ(path.poses[3].seconds, 3 / path.frames_per_second);
 }
 
 TEST(SpiralPath, StaysAmongTheCamerasAndLooksAtOneFocusAhead) {
-  const CameraPath path = SpiralPath(ForwardFacing(), 60);
+  const CameraPath path = Spiral(ForwardFacing(), 60);
   ASSERT_EQ(path.poses.size(), 60);
   ExpectRotations(path);
   // The harmonic mean of the depths 2 and 20.
@@ -155,7 +164,7 @@ TEST(SpiralPath, StaysAmongTheCamerasAndLooksAtOneFocusAhead) {
 }
 
 TEST(SpiralPath, MakesTwoTurnsAndCloses) {
-  const CameraPath path = SpiralPath(ForwardFacing(), 64);
+  const CameraPath path = Spiral(ForwardFacing(), 64);
   int crossings = 0;
   for (std::size_t i = 0; i < 64; ++i) {
     crossings +=
@@ -166,7 +175,7 @@ TEST(SpiralPath, MakesTwoTurnsAndCloses) {
 }
 
 TEST(SpiralPath, OfOneCameraStaysThere) {
-  const CameraPath path = SpiralPath(Ring(1), 5);
+  const CameraPath path = Spiral(Ring(1), 5);
   for (const PathPose& pose : path.poses) {
     EXPECT_LT((Center(pose) - Center(path.poses[0])).norm(), 1e-9);
     EXPECT_TRUE(pose.world_from_camera.matrix().allFinite());
@@ -216,7 +225,7 @@ TEST(TrainingPath, LeavesHeldOutCamerasAside) {
 }
 
 TEST(CameraPaths, NeedCamerasAndAReasonableNumberOfFrames) {
-  for (const auto make : {OrbitPath, SpiralPath, TrainingPath}) {
+  for (const auto make : {Orbit, Spiral, TrainingPath}) {
     EXPECT_THROW(make(WithCamera(), 5), sfm::InputError);
     EXPECT_THROW(make(Ring(5), 0), sfm::InputError);
     EXPECT_THROW(make(Ring(5), 2'000'000'000), sfm::InputError);

@@ -79,7 +79,7 @@ std::string Probe(const fs::path& video) {
 TEST_F(Video, FiveFramesMakeAFilmThatPlayersRead) {
   ASSERT_TRUE(FfmpegIsInstalled()) << "these tests need the program ffmpeg";
   WriteFrames(5, 33, 21);  // odd: padded
-  WriteVideo(frames_, 12.5, folder_ / "film.mp4");
+  WriteVideo(frames_, 5, 12.5, folder_ / "film.mp4");
   const std::string found = Probe(folder_ / "film.mp4");
   for (const char* line : {"codec_name=h264", "width=34", "height=22", "pix_fmt=yuv420p",
                            "r_frame_rate=25/2", "nb_read_frames=5"}) {
@@ -88,10 +88,18 @@ TEST_F(Video, FiveFramesMakeAFilmThatPlayersRead) {
   EXPECT_EQ(NumFiles(), 2);  // the frames' folder and the film
 }
 
+TEST_F(Video, FramesOfAnEarlierRenderingStayOut) {
+  WriteFrames(6, 32, 32);
+  WriteVideo(frames_, 3, 30, folder_ / "film.mp4");
+  EXPECT_THAT(Probe(folder_ / "film.mp4"), HasSubstr("nb_read_frames=3"));
+  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 7, 30, folder_ / "film.mp4"); }),
+              HasSubstr("00006.png"));
+}
+
 TEST_F(Video, AFailureGivesFfmpegsWordsAndLeavesNothing) {
   WriteFrames(1, 32, 32);
   std::ofstream(frames_ / FrameName(0)) << "no picture";
-  const std::string error = ErrorOf([&] { WriteVideo(frames_, 30, folder_ / "film.mp4"); });
+  const std::string error = ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "film.mp4"); });
   EXPECT_THAT(error, testing::AllOf(HasSubstr("film.mp4"), HasSubstr("ffmpeg failed: ")));
   EXPECT_EQ(error.find("it said nothing"), std::string::npos);
   EXPECT_EQ(error.find('\n'), std::string::npos);
@@ -102,18 +110,19 @@ TEST_F(Video, SaysThatFfmpegIsMissing) {
   WriteFrames(1, 32, 32);
   const WithoutPrograms nothing_installed;
   EXPECT_FALSE(FfmpegIsInstalled());
-  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 30, folder_ / "film.mp4"); }),
+  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "film.mp4"); }),
               HasSubstr("install"));
 }
 
 TEST_F(Video, WrongEndingsRatesAndFoldersAreNamed) {
-  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 30, folder_ / "film.mp4"); }),
+  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "film.mp4"); }),
               HasSubstr("00000.png"));
   WriteFrames(1, 32, 32);
-  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 30, folder_ / "film.avi"); }), HasSubstr(".mp4"));
-  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 0, folder_ / "film.mp4"); }),
+  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "film.avi"); }),
+              HasSubstr(".mp4"));
+  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 0, folder_ / "film.mp4"); }),
               HasSubstr("frames a second"));
-  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 30, folder_ / "no" / "film.mp4"); }),
+  EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "no" / "film.mp4"); }),
               HasSubstr("does not exist"));
 }
 
