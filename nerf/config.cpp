@@ -15,20 +15,23 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataOptions, downscale, test_every, validatio
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldOptions, hidden_width, geometry_features, color_layers)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OccupancyOptions, resolution, decay, threshold, warmup_steps,
                                    update_every)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MarchOptions, near_distance, far_distance, steps_per_unit,
-                                   stop_transmittance)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MarchOptions, sampler, near_distance, far_distance,
+                                   steps_per_unit, stop_transmittance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LossOptions, kind, huber_delta)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GradientScalingOptions, full_distance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OptimizerOptions, learning_rate, beta1, beta2, epsilon,
                                    weight_decay)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScheduleOptions, warmup_steps, final_factor)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, steps, coarse_to_fine_steps, samples_per_batch,
-                                   max_rays_per_batch, seed, checkpoint_every, validate_every)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, engine, steps, coarse_to_fine_steps,
+                                   samples_per_batch, max_rays_per_batch, seed, checkpoint_every,
+                                   validate_every)
 namespace kernels {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HashGridOptions, levels, features, log2_table_size,
                                    base_resolution, max_resolution)
 }  // namespace kernels
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Config, data, encoding, field, occupancy, march, loss,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ProposalOptions, intervals, samples, padding, anneal_steps,
+                                   loss_weight, distortion, hidden_width, encoding)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Config, data, encoding, field, occupancy, march, proposal, loss,
                                    gradient_scaling, optimizer, schedule, train)
 
 namespace {
@@ -84,6 +87,8 @@ json ParseJson(const std::string& text, const std::string& where) {
     return json::parse(text);
   } catch (const json::parse_error& error) {
     throw sfm::InputError("{}: is not valid JSON at byte {}; mend it there", where, error.byte);
+  } catch (const json::out_of_range& error) {
+    throw sfm::InputError("{}: holds a number out of range: {}", where, error.what());
   }
 }
 
@@ -128,21 +133,22 @@ json ParseAssignment(const std::string& assignment) {
   return json{{path, value}};
 }
 
-void CheckEncoding(const kernels::HashGridOptions& o) {
+void CheckEncoding(const std::string& block, const kernels::HashGridOptions& o) {
   if (o.levels < 1 || o.levels > 32) {
-    throw sfm::InputError("config: encoding.levels is {}; use 1 to 32", o.levels);
+    throw sfm::InputError("config: {}.levels is {}; use 1 to 32", block, o.levels);
   }
   if (o.features != 1 && o.features != 2 && o.features != 4 && o.features != 8) {
-    throw sfm::InputError("config: encoding.features is {}; use 1, 2, 4 or 8", o.features);
+    throw sfm::InputError("config: {}.features is {}; use 1, 2, 4 or 8", block, o.features);
   }
   if (o.log2_table_size < 8 || o.log2_table_size > 24) {
-    throw sfm::InputError("config: encoding.log2_table_size is {}; use 8 to 24", o.log2_table_size);
+    throw sfm::InputError("config: {}.log2_table_size is {}; use 8 to 24", block,
+                          o.log2_table_size);
   }
   if (o.base_resolution < 1 || o.max_resolution < o.base_resolution || o.max_resolution > 65536) {
     throw sfm::InputError(
-        "config: encoding.base_resolution {} and max_resolution {} must satisfy "
+        "config: {}.base_resolution {} and max_resolution {} must satisfy "
         "1 <= base <= max <= 65536",
-        o.base_resolution, o.max_resolution);
+        block, o.base_resolution, o.max_resolution);
   }
 }
 
@@ -157,7 +163,9 @@ Config Checked(const json& document, const std::string& where) {
   if (const json::array_t changes = json::diff(document, json(config)); !changes.empty()) {
     throw sfm::InputError("{}: {} is out of range", where, changes[0]["path"].get<std::string>());
   }
-  CheckEncoding(config.encoding);
+  CheckEncoding("encoding", config.encoding);
+  CheckEncoding("proposal.encoding", config.proposal.encoding);
+  config.proposal.Check();
   config.data.Check();
   config.field.Check();
   config.occupancy.Check();

@@ -10,6 +10,7 @@
 #include "nerf/field/field_options.h"
 #include "nerf/kernels/hash_encoding.h"
 #include "nerf/sampling/occupancy_grid.h"
+#include "nerf/sampling/proposal_options.h"
 #include "nerf/sampling/ray_marcher.h"
 #include "nerf/train/train_options.h"
 
@@ -23,6 +24,7 @@ struct Config {
   FieldOptions field;
   OccupancyOptions occupancy;
   MarchOptions march;
+  ProposalOptions proposal;
   LossOptions loss;
   GradientScalingOptions gradient_scaling;
   OptimizerOptions optimizer;

@@ -27,6 +27,27 @@ double CgroupCores() {
 // changes it behind our back when it starts.
 std::atomic<int> num_threads = 0;
 
+// Keeps the first exception of several threads.
+class FirstFailure {
+ public:
+  template <class F>
+  void Guard(F&& f) {
+    try {
+      f();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+  }
+  void Rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::exception_ptr failure_;
+  std::mutex mutex_;
+};
+
 }  // namespace
 
 int AvailableCores() {
@@ -55,18 +76,20 @@ void ParallelFor(std::int64_t count, std::int64_t grain,
     body(0, count);
     return;
   }
-  std::exception_ptr failure;
-  std::mutex mutex;
+  FirstFailure failure;
 #pragma omp parallel for schedule(static, 1) num_threads(static_cast <int>(chunks))
   for (std::int64_t k = 0; k < chunks; ++k) {
-    try {
-      body(count * k / chunks, count * (k + 1) / chunks);
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-    }
+    failure.Guard([&] { body(count * k / chunks, count * (k + 1) / chunks); });
   }
-  if (failure) std::rethrow_exception(failure);
+  failure.Rethrow();
+}
+
+void ParallelForEach(std::int64_t count, const std::function<void(std::int64_t)>& body) {
+  FirstFailure failure;
+  const auto threads = static_cast<int>(std::clamp<std::int64_t>(count, 1, NumThreads()));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (std::int64_t item = 0; item < count; ++item) failure.Guard([&] { body(item); });
+  failure.Rethrow();
 }
 
 }  // namespace nerf

@@ -19,4 +19,8 @@ int NumThreads();
 void ParallelFor(std::int64_t count, std::int64_t grain,
                  const std::function<void(std::int64_t, std::int64_t)>& body);
 
+// Calls body(item) for each item in [0, count), whichever thread is free taking the next, and
+// waits: for items of unequal cost whose results do not depend on who computes them.
+void ParallelForEach(std::int64_t count, const std::function<void(std::int64_t)>& body);
+
 }  // namespace nerf

@@ -2,9 +2,11 @@
 
 #include <torch/torch.h>
 
+#include "nerf/kernels/direction_encoding.h"
+
 namespace nerf {
 
-inline constexpr int kDirectionFeatures = 16;
+using kernels::kDirectionFeatures;
 
 // The real spherical harmonics up to degree 3 of unit directions.
 // Source: Sloan 2013, "Efficient Spherical Harmonic Evaluation", appendix A2.

@@ -18,6 +18,7 @@ class HashEncoding : public torch::nn::Module {
   torch::Tensor forward(const torch::Tensor& positions);
 
   const kernels::HashGridLayout& Layout() const { return layout_; }
+  const torch::Tensor& Table() const { return table_; }
 
  private:
   kernels::HashGridLayout layout_;

@@ -24,4 +24,10 @@ torch::Tensor Mlp::forward(torch::Tensor x) {
   return layers_.back()->forward(x);
 }
 
+std::vector<int> Mlp::Widths() const {
+  std::vector<int> widths = {static_cast<int>(Weight(0).size(1))};
+  for (const auto& layer : layers_) widths.push_back(static_cast<int>(layer->weight.size(0)));
+  return widths;
+}
+
 }  // namespace nerf

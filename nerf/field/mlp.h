@@ -16,6 +16,11 @@ class Mlp : public torch::nn::Module {
   // x [N, inputs] -> [N, outputs]
   torch::Tensor forward(torch::Tensor x);
 
+  // Inputs, hidden layers, outputs.
+  std::vector<int> Widths() const;
+  // The weights of layer l, [outputs, inputs].
+  const torch::Tensor& Weight(int l) const { return layers_[l]->weight; }
+
  private:
   std::vector<torch::nn::Linear> layers_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "nerf/field/activations.h"
+#include "nerf/field/density.h"
 #include "nerf/field/direction_encoding.h"
 #include "nerf/sampling/random.h"
 
@@ -11,20 +12,6 @@ namespace {
 
 // Levels that show at no detail at all: cells of an eighth and less of the unit ball.
 constexpr double kCoarsestLevels = 2.0;
-
-// Starts thin: with density 1 a ray would be opaque before it has crossed the scene.
-constexpr double kLogDensityBias = -1.0;
-
-torch::Tensor ActivateDensity(const torch::Tensor& network_output) {
-  return TruncatedExp(network_output + kLogDensityBias);
-}
-
-// How much shorter lengths are in contracted space, along the radius: 1 inside the unit ball, and
-// 1/r^2 = (2 - |y|)^2 outside, for a contracted point y.
-torch::Tensor RadialShrinkage(const torch::Tensor& positions_in_cube) {
-  const torch::Tensor y = 4.0 * (positions_in_cube - 0.5);
-  return torch::clamp(2.0 - y.norm(2, 1), 0.0, 1.0).square();
-}
 
 std::vector<std::int64_t> ColorWidths(const FieldOptions& options) {
   std::vector<std::int64_t> widths = {options.geometry_features + kDirectionFeatures};
@@ -52,16 +39,23 @@ RadianceField::RadianceField(const kernels::HashGridOptions& grid, const FieldOp
 
 void RadianceField::SetDetail(double detail) { detail_ = std::clamp(detail, 0.0, 1.0); }
 
+std::vector<float> RadianceField::LevelWeights() const {
+  const std::size_t levels = hash_encoding_->Layout().levels.size();
+  std::vector<float> weights(levels, 1.0f);
+  if (detail_ >= 1) return weights;
+  const double active = kCoarsestLevels + detail_ * (static_cast<double>(levels) - kCoarsestLevels);
+  for (std::size_t l = 0; l < levels; ++l) {
+    weights[l] = static_cast<float>(std::clamp(active - static_cast<double>(l), 0.0, 1.0));
+  }
+  return weights;
+}
+
 // The encoded positions with the levels beyond the detail faded to 0.
 torch::Tensor RadianceField::Encode(const torch::Tensor& positions) {
   const torch::Tensor encoded = hash_encoding_->forward(positions);
   if (detail_ >= 1) return encoded;
-  const kernels::HashGridLayout& layout = hash_encoding_->Layout();
-  const auto levels = static_cast<std::int64_t>(layout.levels.size());
-  const double active = kCoarsestLevels + detail_ * (static_cast<double>(levels) - kCoarsestLevels);
-  const torch::Tensor weight =
-      torch::clamp(active - torch::arange(levels, encoded.options()), 0.0, 1.0);
-  return encoded * weight.repeat_interleave(layout.features);
+  const torch::Tensor weights = torch::tensor(LevelWeights(), encoded.options());
+  return encoded * weights.repeat_interleave(hash_encoding_->Layout().features);
 }
 
 torch::Tensor RadianceField::ContractedDensity(const torch::Tensor& positions) {

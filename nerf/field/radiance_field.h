@@ -3,6 +3,7 @@
 #include <torch/torch.h>
 
 #include <memory>
+#include <vector>
 
 #include "nerf/data/image.h"
 #include "nerf/field/field_options.h"
@@ -47,7 +48,14 @@ class RadianceField : public torch::nn::Module {
   void SetDetail(double detail);
   double Detail() const { return detail_; }
 
+  // What the detail leaves of each level of the encoding, in [0,1].
+  std::vector<float> LevelWeights() const;
+
   torch::Dtype Dtype() const;
+  ColorEncoding Encoding() const { return encoding_; }
+  const HashEncoding& Hash() const { return *hash_encoding_; }
+  const Mlp& DensityNetwork() const { return *density_network_; }
+  const Mlp& ColorNetwork() const { return *color_network_; }
 
  private:
   torch::Tensor Encode(const torch::Tensor& positions);

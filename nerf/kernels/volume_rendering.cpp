@@ -81,6 +81,42 @@ void CompositeBackward(const RaySegments<Real>& in, const CompositedGradients<Re
 }
 
 template <class Real>
+void WeightsForward(std::span<const std::int64_t> ray_begin, std::span<const Real> sigma,
+                    std::span<const Real> dt, std::span<Real> weights, std::int64_t first_ray,
+                    std::int64_t last_ray) {
+  for (std::int64_t ray = first_ray; ray < last_ray; ++ray) {
+    double tau = 0;
+    for (std::int64_t i = ray_begin[ray]; i < ray_begin[ray + 1]; ++i) {
+      const double x = OpticalDepth(sigma[i], dt[i]);
+      weights[i] = static_cast<Real>(std::exp(-tau) * -std::expm1(-x));
+      tau += x;
+    }
+  }
+}
+
+template <class Real>
+void WeightsBackward(std::span<const std::int64_t> ray_begin, std::span<const Real> sigma,
+                     std::span<const Real> dt, std::span<const Real> dL_dweights,
+                     std::span<Real> dL_dsigma, std::int64_t first_ray, std::int64_t last_ray) {
+  std::vector<double> tau;  // tau[k]: optical depth in front of sample k of the ray
+  for (std::int64_t ray = first_ray; ray < last_ray; ++ray) {
+    const std::int64_t begin = ray_begin[ray], count = ray_begin[ray + 1] - begin;
+    tau.assign(count + 1, 0.0);
+    for (std::int64_t k = 0; k < count; ++k) {
+      tau[k + 1] = tau[k] + OpticalDepth(sigma[begin + k], dt[begin + k]);
+    }
+    double suffix = 0;
+    for (std::int64_t k = count - 1; k >= 0; --k) {
+      const std::int64_t i = begin + k;
+      const auto g = static_cast<double>(dL_dweights[i]);
+      const double dL_dx = std::exp(-tau[k + 1]) * g - suffix;
+      dL_dsigma[i] = static_cast<Real>(dL_dx * static_cast<double>(dt[i]));
+      suffix += std::exp(-tau[k]) * -std::expm1(-OpticalDepth(sigma[i], dt[i])) * g;
+    }
+  }
+}
+
+template <class Real>
 void CountVisible(std::span<const std::int64_t> ray_begin, std::span<const Real> sigma,
                   std::span<const Real> dt, double stop_transmittance, std::span<std::int64_t> kept,
                   std::int64_t first_ray, std::int64_t last_ray) {
@@ -101,6 +137,12 @@ void CountVisible(std::span<const std::int64_t> ray_begin, std::span<const Real>
                                  std::int64_t);                                                    \
   template void CompositeBackward(const RaySegments<Real>&, const CompositedGradients<Real>&,      \
                                   const SegmentGradients<Real>&, std::int64_t, std::int64_t);      \
+  template void WeightsForward(std::span<const std::int64_t>, std::span<const Real>,               \
+                               std::span<const Real>, std::span<Real>, std::int64_t,               \
+                               std::int64_t);                                                      \
+  template void WeightsBackward(std::span<const std::int64_t>, std::span<const Real>,              \
+                                std::span<const Real>, std::span<const Real>, std::span<Real>,     \
+                                std::int64_t, std::int64_t);                                       \
   template void CountVisible(std::span<const std::int64_t>, std::span<const Real>,                 \
                              std::span<const Real>, double, std::span<std::int64_t>, std::int64_t, \
                              std::int64_t);

@@ -58,6 +58,16 @@ void CompositeBackward(const RaySegments<Real>& in, const CompositedGradients<Re
                        const SegmentGradients<Real>& out, std::int64_t first_ray,
                        std::int64_t last_ray);
 
+// The weights w_i alone, [S], and the way back: dL/dx_i = T_{i+1} dL/dw_i - sum_{j>i} w_j dL/dw_j.
+template <class Real>
+void WeightsForward(std::span<const std::int64_t> ray_begin, std::span<const Real> sigma,
+                    std::span<const Real> dt, std::span<Real> weights, std::int64_t first_ray,
+                    std::int64_t last_ray);
+template <class Real>
+void WeightsBackward(std::span<const std::int64_t> ray_begin, std::span<const Real> sigma,
+                     std::span<const Real> dt, std::span<const Real> dL_dweights,
+                     std::span<Real> dL_dsigma, std::int64_t first_ray, std::int64_t last_ray);
+
 // First sample of each ray at whose front the transmittance is below stop_transmittance: samples
 // from there on cannot change the pixel by more than stop_transmittance times the largest radiance.
 //   kept  [R] number of samples of each ray before that point

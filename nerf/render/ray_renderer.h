@@ -12,8 +12,8 @@ struct RenderOutput {
   std::vector<float> rgb;      // [R,3] in the encoding that the field was trained in
   std::vector<float> opacity;  // [R] in [0,1]
   std::vector<float> depth;    // [R] expected distance of what was hit, normalized scene units,
-                             // inside [near, far]; 0 where opacity is 0: there it has no meaning
-  std::int64_t samples = 0;  // points at which the field was evaluated
+                               // inside [near, far]; 0 where opacity is 0: there it has no meaning
+  std::int64_t samples = 0;    // points at which the field was evaluated
 };
 
 // Anything that turns rays into colours.

@@ -63,7 +63,50 @@ struct VolumeRenderingFunction : torch::autograd::Function<VolumeRenderingFuncti
   }
 };
 
+struct WeightsFunction : torch::autograd::Function<WeightsFunction> {
+  static torch::Tensor forward(torch::autograd::AutogradContext* ctx,
+                               const torch::Tensor& ray_begin, const torch::Tensor& sigma,
+                               const torch::Tensor& dt) {
+    torch::Tensor weights = torch::empty_like(sigma);
+    AT_DISPATCH_FLOATING_TYPES(sigma.scalar_type(), "weights_forward", [&] {
+      ParallelFor(
+          ray_begin.size(0) - 1, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+            kernels::WeightsForward<scalar_t>(Span<const std::int64_t>(ray_begin),
+                                              Span<const scalar_t>(sigma), Span<const scalar_t>(dt),
+                                              Span<scalar_t>(weights), first, last);
+          });
+    });
+    ctx->save_for_backward({ray_begin, sigma, dt});
+    return weights;
+  }
+
+  static torch::autograd::variable_list backward(torch::autograd::AutogradContext* ctx,
+                                                 torch::autograd::variable_list grads) {
+    const torch::autograd::variable_list in = ctx->get_saved_variables();
+    const torch::Tensor dL_dweights = grads[0].contiguous();
+    torch::Tensor dL_dsigma = torch::empty_like(in[1]);
+    AT_DISPATCH_FLOATING_TYPES(in[1].scalar_type(), "weights_backward", [&] {
+      ParallelFor(in[0].size(0) - 1, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+        kernels::WeightsBackward<scalar_t>(Span<const std::int64_t>(in[0]),
+                                           Span<const scalar_t>(in[1]), Span<const scalar_t>(in[2]),
+                                           Span<const scalar_t>(dL_dweights),
+                                           Span<scalar_t>(dL_dsigma), first, last);
+      });
+    });
+    return {torch::Tensor(), dL_dsigma, torch::Tensor()};
+  }
+};
+
 }  // namespace
+
+torch::Tensor RenderWeights(const torch::Tensor& ray_begin, const torch::Tensor& sigma,
+                            const torch::Tensor& dt) {
+  TORCH_CHECK(ray_begin.dim() == 1 && ray_begin.scalar_type() == torch::kLong,
+              "RenderWeights: ray_begin must be [R+1] int64, got ", ray_begin.sizes());
+  TORCH_CHECK(sigma.dim() == 1 && dt.sizes() == sigma.sizes(),
+              "RenderWeights: want sigma [S], dt [S]; got ", sigma.sizes(), dt.sizes());
+  return WeightsFunction::apply(ray_begin.contiguous(), sigma.contiguous(), dt.contiguous());
+}
 
 VolumeRendering RenderVolume(const torch::Tensor& ray_begin, const torch::Tensor& sigma,
                              const torch::Tensor& radiance, const torch::Tensor& dt,

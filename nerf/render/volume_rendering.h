@@ -25,4 +25,9 @@ VolumeRendering RenderVolume(const torch::Tensor& ray_begin, const torch::Tensor
                              const torch::Tensor& radiance, const torch::Tensor& dt,
                              const torch::Tensor& t, const torch::Tensor& background);
 
+// The weights w_i alone. Differentiable in sigma.
+//   returns  [S]
+torch::Tensor RenderWeights(const torch::Tensor& ray_begin, const torch::Tensor& sigma,
+                            const torch::Tensor& dt);
+
 }  // namespace nerf

@@ -8,21 +8,17 @@
 #include "sfm/input_error.h"
 
 namespace nerf {
-namespace {
 
-struct RaySamples {
-  std::vector<float> position, t, dt;
-};
-
-void MarchRay(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float jitter,
-              const OccupancyGrid& grid, const MarchOptions& options, RaySamples& out) {
+void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
+              const MarchOptions& options, RaySamples& out) {
+  const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
   const float step = options.StepLength();
   // Far out along the ray the contracted point hardly moves; without a bound one step would be
   // longer than everything before it.
   constexpr float kSlowest = 1e-6f;
   const auto far_distance = static_cast<float>(options.far_distance);
   auto t = static_cast<float>(options.near_distance);
-  float fraction = 1.0f - jitter;
+  float fraction = 1.0f - rays.jitter[r];
   while (t < far_distance) {
     const float speed = ContractedSpeed(origin + t * direction, direction);
     const float dt = std::min(fraction * step / std::max(speed, kSlowest), far_distance - t);
@@ -39,9 +35,11 @@ void MarchRay(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, f
   }
 }
 
-}  // namespace
-
 void MarchOptions::Check() const {
+  if (sampler != "occupancy" && sampler != "proposal") {
+    throw sfm::InputError("config: march.sampler is \"{}\"; use \"occupancy\" or \"proposal\"",
+                          sampler);
+  }
   if (!(near_distance >= 0 && near_distance < far_distance && far_distance <= 1e6f)) {
     throw sfm::InputError(
         "config: march.near_distance {} and march.far_distance {} must satisfy "
@@ -72,9 +70,7 @@ PackedSamples MarchRays(const RayBatch& rays, const OccupancyGrid& grid,
       const std::int64_t last = std::min(count, (chunk + 1) * kChunk);
       for (std::int64_t r = chunk * kChunk; r < last; ++r) {
         const std::size_t before = parts[chunk].t.size();
-        MarchRay(Eigen::Map<const Eigen::Vector3f>(&rays.origin[3 * r]),
-                 Eigen::Map<const Eigen::Vector3f>(&rays.direction[3 * r]), rays.jitter[r], grid,
-                 options, parts[chunk]);
+        MarchRay(rays, r, grid, options, parts[chunk]);
         out.ray_begin[r + 1] = static_cast<std::int64_t>(parts[chunk].t.size() - before);
       }
     }

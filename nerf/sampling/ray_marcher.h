@@ -1,24 +1,41 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/sampling/rays.h"
 
 namespace nerf {
 
 struct MarchOptions {
-  double near_distance = 0.05;       // first sample, in normalized scene units
-  double far_distance = 100.0;       // last sample, in normalized scene units
-  int steps_per_unit = 64;           // steps in a unit of contracted space
-  double stop_transmittance = 1e-4;  // a ray ends where less light than this gets through
+  std::string sampler = "occupancy";  // what places samples: the grid, or a "proposal" field
+  double near_distance = 0.05;        // first sample, in normalized scene units
+  double far_distance = 100.0;        // last sample, in normalized scene units
+  int steps_per_unit = 64;            // steps in a unit of contracted space
+  double stop_transmittance = 1e-4;   // a ray ends where less light than this gets through
 
   void Check() const;
   float StepLength() const { return 1.0f / static_cast<float>(steps_per_unit); }
 };
 
-// Steps along each ray with a constant step in contracted space (so the step grows with the
+// The samples of one ray, or of several one after the other.
+struct RaySamples {
+  std::vector<float> position;  // [S,3] contracted, in the unit cube
+  std::vector<float> t, dt;     // [S] as in PackedSamples
+
+  std::int64_t Size() const { return static_cast<std::int64_t>(t.size()); }
+};
+
+// Steps along a ray with a constant step in contracted space (so the step grows with the
 // distance outside the unit ball as the field's resolution falls) and keeps the samples that stand
 // in occupied cells, each in the middle of its step. The first step of a ray is shortened to the
-// fraction 1 - jitter, which shifts all that follow.
+// fraction 1 - jitter, which shifts all that follow. Appends the samples of ray r to `out`.
+void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
+              const MarchOptions& options, RaySamples& out);
+
+// MarchRay for all of them, on all threads.
 PackedSamples MarchRays(const RayBatch& rays, const OccupancyGrid& grid,
                         const MarchOptions& options);
 

@@ -1,19 +1,36 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "nerf/data/pixel_sampler.h"
 #include "nerf/render/ray_renderer.h"
+#include "nerf/sampling/proposal_options.h"
+#include "nerf/sampling/ray_marcher.h"
+#include "nerf/train/train_options.h"
 
 namespace nerf {
 
 class OccupancyGrid;
+class ProposalField;
+class RadianceField;
 
 struct StepResult {
   double loss = 0;           // mean over rays and channels
   double squared_error = 0;  // mean over rays and channels, for PSNR
   std::int64_t marched = 0;  // samples in occupied cells
   std::int64_t shaded = 0;   // samples of them that light reaches, on which gradients were taken
+};
+
+// What an engine works on. Where there is a proposal it places the samples, else the grid does.
+struct EngineParts {
+  std::shared_ptr<RadianceField> field;
+  std::shared_ptr<OccupancyGrid> grid;
+  std::shared_ptr<ProposalField> proposal;  // may be null
+  MarchOptions march;
+  ProposalOptions proposal_options;
+  LossOptions loss;
+  GradientScalingOptions gradient_scaling;
 };
 
 // Evaluates rays, with gradients or without. Two engines, one meaning: LibTorchEngine composes
@@ -26,7 +43,7 @@ class Engine : public RayRenderer {
   // Throws NonFiniteError when the loss is not finite.
   virtual StepResult AccumulateGradients(const TargetBatch& batch) = 0;
 
-  // Draws fresh densities into the occupancy grid.
+  // Draws fresh densities into the occupancy grid; nothing where a proposal takes its place.
   virtual void UpdateOccupancy(std::int64_t step, std::uint64_t seed) = 0;
 };
 

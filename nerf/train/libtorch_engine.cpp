@@ -6,6 +6,7 @@
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
 #include "nerf/parallel.h"
+#include "nerf/render/proposal_sampling.h"
 #include "nerf/render/volume_rendering.h"
 #include "nerf/train/losses.h"
 #include "nerf/train/non_finite_error.h"
@@ -50,19 +51,12 @@ std::string DescribeNonFinite(const PackedSamples& samples, const FieldOutput& f
 struct LibTorchEngine::Evaluated {
   PackedSamples samples;
   std::int64_t marched = 0;
+  ProposedSamples proposed;  // where there is a proposal
   FieldOutput field;
   VolumeRendering pixels;
 };
 
-LibTorchEngine::LibTorchEngine(std::shared_ptr<RadianceField> field,
-                               std::shared_ptr<OccupancyGrid> grid, const MarchOptions& march,
-                               const LossOptions& loss,
-                               const GradientScalingOptions& gradient_scaling)
-    : field_(std::move(field)),
-      grid_(std::move(grid)),
-      march_(march),
-      loss_(loss),
-      gradient_scaling_(gradient_scaling) {}
+LibTorchEngine::LibTorchEngine(EngineParts parts) : parts_(std::move(parts)) {}
 
 // Densities without gradients, a chunk of positions at a time.
 std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
@@ -73,8 +67,9 @@ std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
   for (std::int64_t first = 0; first < size; first += kChunk) {
     const std::int64_t count = std::min(kChunk, size - first);
     const torch::Tensor chunk =
-        torch::from_blob(const_cast<float*>(&positions[3 * first]), {count, 3}).to(field_->Dtype());
-    const torch::Tensor part = (field_.get()->*density)(chunk).to(torch::kFloat).contiguous();
+        torch::from_blob(const_cast<float*>(&positions[3 * first]), {count, 3})
+            .to(parts_.field->Dtype());
+    const torch::Tensor part = (parts_.field.get()->*density)(chunk).to(torch::kFloat).contiguous();
     std::copy_n(part.data_ptr<float>(), count, sigma.begin() + first);
   }
   return sigma;
@@ -86,19 +81,25 @@ PackedSamples LibTorchEngine::VisibleSamples(const PackedSamples& samples) {
   const std::vector<float> sigma = Densities(samples.position, &RadianceField::Density);
   std::vector<std::int64_t> kept(samples.Rays());
   ParallelFor(samples.Rays(), 64, [&](std::int64_t first, std::int64_t last) {
-    kernels::CountVisible<float>(samples.ray_begin, sigma, samples.dt, march_.stop_transmittance,
-                                 kept, first, last);
+    kernels::CountVisible<float>(samples.ray_begin, sigma, samples.dt,
+                                 parts_.march.stop_transmittance, kept, first, last);
   });
   return KeepFront(samples, kept);
 }
 
 // A ray's way from its origin to its pixel.
 LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
-  const torch::Dtype dtype = field_->Dtype();
-  const PackedSamples marched = MarchRays(rays, *grid_, march_);
+  const torch::Dtype dtype = parts_.field->Dtype();
   Evaluated out;
-  out.marched = marched.Size();
-  out.samples = VisibleSamples(marched);
+  PackedSamples placed;
+  if (parts_.proposal) {
+    out.proposed = ProposeSamples(rays, *parts_.proposal, parts_.proposal_options, parts_.march);
+    placed = out.proposed.samples;
+  } else {
+    placed = MarchRays(rays, *parts_.grid, parts_.march);
+  }
+  out.marched = placed.Size();
+  out.samples = VisibleSamples(placed);
 
   const std::int64_t count = rays.Size();
   const std::int64_t size = out.samples.Size();
@@ -106,8 +107,8 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
   const torch::Tensor directions = TensorOf(rays.direction, {count, 3}, dtype);
   const torch::Tensor ray = TensorOf(out.samples.ray, {size}, torch::kLong);
   const torch::Tensor t = TensorOf(out.samples.t, {size}, dtype);
-  out.field = field_->forward(positions, directions, ray);
-  ScaleGradients(out.field, t, gradient_scaling_.full_distance);
+  out.field = parts_.field->forward(positions, directions, ray);
+  ScaleGradients(out.field, t, parts_.gradient_scaling.full_distance);
 
   out.pixels =
       RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong), out.field.sigma,
@@ -127,9 +128,9 @@ RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
                          to_vector(out.pixels.depth), out.marched + out.samples.Size()};
   for (std::size_t r = 0; r < result.depth.size(); ++r) {
     if (result.opacity[r] > 0) {
-      result.depth[r] =
-          std::clamp(result.depth[r] / result.opacity[r], static_cast<float>(march_.near_distance),
-                     static_cast<float>(march_.far_distance));
+      result.depth[r] = std::clamp(result.depth[r] / result.opacity[r],
+                                   static_cast<float>(parts_.march.near_distance),
+                                   static_cast<float>(parts_.march.far_distance));
     }
   }
   return result;
@@ -139,15 +140,20 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   const Evaluated out = Evaluate(batch.rays);
   const torch::Tensor target =
       TensorOf(batch.rgb, {batch.rays.Size(), 3}, out.pixels.rgb.scalar_type());
-  const torch::Tensor loss = ColorLoss(out.pixels.rgb, target, loss_);
+  const torch::Tensor loss = ColorLoss(out.pixels.rgb, target, parts_.loss);
   StepResult result;
   result.loss = loss.item<double>();
   if (!std::isfinite(result.loss)) {
     throw NonFiniteError("the loss is not finite: " +
                          DescribeNonFinite(out.samples, out.field, out.pixels.rgb));
   }
+  torch::Tensor total = loss;
+  if (parts_.proposal) {
+    total = loss + ProposalLoss(out.proposed, out.samples, out.field.sigma, parts_.proposal_options,
+                                parts_.march);
+  }
   // A batch whose rays meet no occupied cell has no parameters to blame.
-  if (loss.requires_grad()) loss.backward();
+  if (total.requires_grad()) total.backward();
   result.squared_error = torch::mse_loss(out.pixels.rgb.detach(), target).item<double>();
   result.marched = out.marched;
   result.shaded = out.samples.Size();
@@ -155,7 +161,8 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
 }
 
 void LibTorchEngine::UpdateOccupancy(std::int64_t step, std::uint64_t seed) {
-  grid_->Update(step, seed, [this](std::span<const float> positions) {
+  if (parts_.proposal) return;
+  parts_.grid->Update(step, seed, [this](std::span<const float> positions) {
     return Densities(positions, &RadianceField::ContractedDensity);
   });
 }

@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "nerf/field/radiance_field.h"
+#include "nerf/render/proposal_sampling.h"
 #include "nerf/sampling/occupancy_grid.h"
-#include "nerf/sampling/ray_marcher.h"
 #include "nerf/train/engine.h"
-#include "nerf/train/train_options.h"
 
 namespace nerf {
 
@@ -16,9 +15,7 @@ namespace nerf {
 // after field->to(torch::kDouble), in double.
 class LibTorchEngine : public Engine {
  public:
-  LibTorchEngine(std::shared_ptr<RadianceField> field, std::shared_ptr<OccupancyGrid> grid,
-                 const MarchOptions& march, const LossOptions& loss,
-                 const GradientScalingOptions& gradient_scaling);
+  explicit LibTorchEngine(EngineParts parts);
 
   RenderOutput Render(const RayBatch& rays) override;
   StepResult AccumulateGradients(const TargetBatch& batch) override;
@@ -31,11 +28,7 @@ class LibTorchEngine : public Engine {
   using DensityFunction = torch::Tensor (RadianceField::*)(const torch::Tensor&);
   std::vector<float> Densities(std::span<const float> positions, DensityFunction density);
 
-  std::shared_ptr<RadianceField> field_;
-  std::shared_ptr<OccupancyGrid> grid_;
-  MarchOptions march_;
-  LossOptions loss_;
-  GradientScalingOptions gradient_scaling_;
+  EngineParts parts_;
 };
 
 }  // namespace nerf

@@ -2,10 +2,14 @@
 
 #include <cstring>
 
+#include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/field/tensor_span.h"
+#include "nerf/sampling/occupancy_grid.h"
 #include "nerf/train/checkpoint.h"
+#include "nerf/train/fused_engine.h"
 #include "nerf/train/libtorch_engine.h"
+#include "nerf/train/parameters.h"
 #include "sfm/input_error.h"
 
 namespace nerf {
@@ -13,7 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr char kFieldPrefix[] = "field.";
 constexpr char kOccupancyName[] = "occupancy";
 
 json JsonFromScene(const SceneFacts& scene) {
@@ -42,21 +45,45 @@ SceneFacts SceneFromJson(const json& scene) {
 }  // namespace
 
 Model MakeModel(const Config& config, const SceneFacts& scene) {
-  Model model{config, scene, nullptr, nullptr, nullptr};
+  Model model;
+  model.config = config;
+  model.scene = scene;
   model.field = std::make_shared<RadianceField>(config.encoding, config.field, scene.encoding,
                                                 config.train.seed);
   model.grid = std::make_shared<OccupancyGrid>(config.occupancy, config.march.StepLength());
-  model.engine = std::make_shared<LibTorchEngine>(model.field, model.grid, config.march,
-                                                  config.loss, config.gradient_scaling);
+  if (config.march.sampler == "proposal") {
+    model.proposal = std::make_shared<ProposalField>(config.proposal, config.train.seed);
+  }
+  const EngineParts parts = {model.field,     model.grid,  model.proposal,         config.march,
+                             config.proposal, config.loss, config.gradient_scaling};
+  if (config.train.engine == "fused") {
+    model.engine = std::make_shared<FusedEngine>(parts);
+  } else {
+    model.engine = std::make_shared<LibTorchEngine>(parts);
+  }
   return model;
+}
+
+std::vector<std::pair<std::string, torch::Tensor>> NamedParameters(const Model& model) {
+  std::vector<std::pair<std::string, torch::Tensor>> named;
+  for (const auto& parameter : model.field->named_parameters()) {
+    named.emplace_back("field." + parameter.key(), parameter.value());
+  }
+  if (model.proposal) {
+    for (const auto& parameter : model.proposal->named_parameters()) {
+      named.emplace_back("proposal." + parameter.key(), parameter.value());
+    }
+  }
+  return named;
 }
 
 void AddModel(const Model& model, Checkpoint& checkpoint) {
   checkpoint.meta["config"] = JsonFromConfig(model.config);
   checkpoint.meta["scene"] = JsonFromScene(model.scene);
   checkpoint.meta["detail"] = model.field->Detail();
-  for (const auto& parameter : model.field->named_parameters()) {
-    checkpoint.tensors[kFieldPrefix + parameter.key()] = parameter.value();
+  if (model.proposal) checkpoint.meta["trust"] = model.proposal->Trust();
+  for (const auto& [name, parameter] : NamedParameters(model)) {
+    checkpoint.tensors[name] = parameter;
   }
   const std::vector<float>& density = model.grid->Density();
   checkpoint.tensors[kOccupancyName] =
@@ -67,9 +94,10 @@ Model ModelFromCheckpoint(const Checkpoint& checkpoint) {
   try {
     Model model = MakeModel(ConfigFromJson(checkpoint.meta.at("config"), "checkpoint"),
                             SceneFromJson(checkpoint.meta.at("scene")));
-    for (const auto& parameter : model.field->named_parameters()) {
-      CopyTensor(checkpoint.tensors, kFieldPrefix + parameter.key(), parameter.value());
+    for (const auto& [name, parameter] : NamedParameters(model)) {
+      CopyTensor(checkpoint.tensors, name, parameter);
     }
+    if (model.proposal) model.proposal->SetTrust(checkpoint.meta.at("trust"));
     model.field->SetDetail(checkpoint.meta.at("detail"));
     std::vector<float>& density = model.grid->Density();
     CopyTensor(checkpoint.tensors, kOccupancyName,

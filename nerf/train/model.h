@@ -11,6 +11,7 @@ namespace nerf {
 
 class Engine;
 class OccupancyGrid;
+class ProposalField;
 class RadianceField;
 struct Checkpoint;
 
@@ -27,6 +28,7 @@ struct Model {
   SceneFacts scene;
   std::shared_ptr<RadianceField> field;
   std::shared_ptr<OccupancyGrid> grid;
+  std::shared_ptr<ProposalField> proposal;  // where it and not the grid places the samples
   std::shared_ptr<Engine> engine;
 };
 

@@ -7,27 +7,33 @@
 #include <string>
 #include <vector>
 
+#include "nerf/kernels/adam.h"
 #include "nerf/train/train_options.h"
 
 namespace nerf {
 
-// Adam in one pass over each parameter, on all threads.
+// Adam in one pass over each parameter, on all threads, as an optimiser of LibTorch's.
 // Source: Kingma and Ba 2015; the same numbers as torch::optim::Adam, without its eight passes.
-class Adam {
+// Hash tables, those parameters whose name ends in "table", are updated sparsely and without weight
+// decay (kernels::SparseAdamStep).
+class Adam : public torch::optim::Optimizer {
  public:
-  // parameters: named float tensors, which the optimiser updates in place. Weight decay applies to
-  // all but those whose name ends in "table".
+  // parameters: named float tensors, which the optimiser updates in place; tables are
+  // [entries, features] with 1, 2, 4 or 8 features.
   Adam(std::vector<std::pair<std::string, torch::Tensor>> parameters,
        const OptimizerOptions& options);
 
-  // One step along the gradients, which are dropped afterwards. A parameter without a gradient
-  // counts as one whose gradient is 0.
-  //   learning_rate_factor  multiplies the learning rate of the options
+  // Multiplies the learning rate of the options from now on.
+  void SetLearningRateFactor(double factor);
+
+  // One step along the gradients, which are 0 afterwards. A parameter without a gradient counts as
+  // one whose gradient is 0.
   // Throws NonFiniteError naming the parameter whose gradient is not finite; parameters are then
   // spoilt and must not be saved.
-  void Step(double learning_rate_factor);
+  torch::Tensor step(LossClosure closure = nullptr) override;
 
-  // The state that a checkpoint keeps: "adam.m.NAME", "adam.v.NAME", "adam.steps".
+  // The state that a checkpoint keeps: "adam.m.NAME", "adam.v.NAME", "adam.n.NAME" (the steps of
+  // each entry of a table), "adam.steps".
   void AddTo(std::map<std::string, torch::Tensor>& tensors) const;
   void LoadFrom(const std::map<std::string, torch::Tensor>& tensors);
 
@@ -35,11 +41,17 @@ class Adam {
   struct Slot {
     std::string name;
     torch::Tensor parameter, first_moment, second_moment;
-    float weight_decay;
+    torch::Tensor entry_steps;  // [entries] int32; undefined where updates are dense
   };
+  bool StepDense(const Slot& slot, const torch::Tensor& gradient);
+  bool StepSparse(const Slot& slot, const torch::Tensor& gradient);
+  std::map<std::string, torch::Tensor> State() const;
+
   OptimizerOptions options_;
+  kernels::AdamCoefficients coefficients_;
+  std::vector<kernels::AdamBiasCorrection> corrections_;
   std::vector<Slot> slots_;
-  std::int64_t steps_ = 0;
+  torch::Tensor steps_ = torch::zeros({}, torch::kLong);
 };
 
 }  // namespace nerf

@@ -16,12 +16,12 @@ void LossOptions::Check() const {
 }
 
 void OptimizerOptions::Check() const {
-  if (!(learning_rate > 0 && std::isfinite(learning_rate))) {
-    throw sfm::InputError("config: optimizer.learning_rate is {}; use a value above 0",
+  if (!(learning_rate > 0 && learning_rate <= 1e6)) {
+    throw sfm::InputError("config: optimizer.learning_rate is {}; use a value above 0, at most 1e6",
                           learning_rate);
   }
-  if (!(beta1 >= 0 && beta1 < 1 && beta2 >= 0 && beta2 < 1)) {
-    throw sfm::InputError("config: optimizer.beta1 {} and beta2 {} must be in [0, 1)", beta1,
+  if (!(beta1 >= 0 && beta1 <= 0.9999 && beta2 >= 0 && beta2 <= 0.9999)) {
+    throw sfm::InputError("config: optimizer.beta1 {} and beta2 {} must be in [0, 0.9999]", beta1,
                           beta2);
   }
   if (!(epsilon > 0)) throw sfm::InputError("config: optimizer.epsilon must be above 0");
@@ -56,6 +56,9 @@ double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, st
 }
 
 void TrainOptions::Check() const {
+  if (engine != "fused" && engine != "libtorch") {
+    throw sfm::InputError("config: train.engine is \"{}\"; use \"fused\" or \"libtorch\"", engine);
+  }
   if (steps < 1) throw sfm::InputError("config: train.steps is {}; use 1 or more", steps);
   if (coarse_to_fine_steps < 0) {
     throw sfm::InputError("config: train.coarse_to_fine_steps must not be negative");

@@ -7,12 +7,15 @@
 #include <sstream>
 
 #include "nerf/data/pixel_sampler.h"
+#include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
+#include "nerf/parallel.h"
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/train/checkpoint.h"
 #include "nerf/train/engine.h"
 #include "nerf/train/non_finite_error.h"
 #include "nerf/train/optimizer.h"
+#include "nerf/train/parameters.h"
 #include "nerf/train/run_folder.h"
 #include "nerf/train/visible_cells.h"
 #include "sfm/atomic_file.h"
@@ -67,7 +70,7 @@ struct Trainer::State {
         data(data_in),
         run(std::move(run_in)),
         sampler(data.train),
-        optimizer(NamedParameters(*model.field), model.config.optimizer),
+        optimizer(NamedParameters(model), model.config.optimizer),
         rays_per_batch(std::clamp<std::int64_t>(Options().samples_per_batch / 128, 1,
                                                 Options().max_rays_per_batch)) {
     if (!data.validation.empty()) {
@@ -75,14 +78,6 @@ struct Trainer::State {
       validation = PixelSampler(data.validation).Sample(kValidationRays, Options().seed, 0);
       std::ranges::fill(validation.rays.jitter, 0.5f);
     }
-  }
-
-  static std::vector<std::pair<std::string, torch::Tensor>> NamedParameters(RadianceField& field) {
-    std::vector<std::pair<std::string, torch::Tensor>> named;
-    for (const auto& parameter : field.named_parameters()) {
-      named.emplace_back(parameter.key(), parameter.value());
-    }
-    return named;
   }
 
   const TrainOptions& Options() const { return model.config.train; }
@@ -114,13 +109,18 @@ StepResult Trainer::State::Step() {
     model.field->SetDetail(static_cast<double>(step) /
                            static_cast<double>(options.coarse_to_fine_steps));
   }
+  if (model.proposal) {
+    const int anneal = model.config.proposal.anneal_steps;
+    model.proposal->SetTrust(anneal > 0 ? static_cast<double>(step) / anneal : 1.0);
+  }
   try {
     if (step % model.config.occupancy.update_every == 0) {
       model.engine->UpdateOccupancy(step, options.seed);
     }
     const TargetBatch batch = sampler.Sample(rays_per_batch, options.seed, step);
     const StepResult result = model.engine->AccumulateGradients(batch);
-    optimizer.Step(LearningRateFactor(model.config.schedule, step, options.steps));
+    optimizer.SetLearningRateFactor(LearningRateFactor(model.config.schedule, step, options.steps));
+    optimizer.step();
     return result;
   } catch (const NonFiniteError& error) {
     throw NonFiniteError(fmt::format("step {}: {}; the last good checkpoint stays in {}", step,
@@ -173,6 +173,7 @@ void Trainer::State::Save() const {
   checkpoint.meta["step"] = step;
   checkpoint.meta["rays_per_batch"] = rays_per_batch;
   checkpoint.meta["training_seconds"] = training_seconds;
+  checkpoint.meta["threads"] = NumThreads();
   checkpoint.meta["validation_psnr"] = validation_psnr;
   WriteCheckpoint(CheckpointPath(run), checkpoint);
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "sfm/input_error.h"
+#include "tests/support/scratch_folder.h"
 
 namespace nerf {
 namespace {
@@ -58,7 +59,8 @@ TEST(Config, AValueOutOfRangeIsNamed) {
   EXPECT_THAT(ErrorOf("base", {"train.steps=0"}), HasSubstr("train.steps"));
   EXPECT_THAT(ErrorOf("base", {"encoding.features=3"}), HasSubstr("encoding.features"));
   EXPECT_THAT(ErrorOf("base", {"encoding.levels=4294967297"}), HasSubstr("encoding/levels"));
-  EXPECT_THAT(ErrorOf("base", {"train.seed=-1"}), HasSubstr("train.seed must be a whole number, 0 or more"));
+  EXPECT_THAT(ErrorOf("base", {"train.seed=-1"}),
+              HasSubstr("train.seed must be a whole number, 0 or more"));
   EXPECT_THAT(ErrorOf("base", {"loss.kind=l7"}), HasSubstr("l7"));
 }
 
@@ -71,7 +73,8 @@ TEST(Config, AnUnknownPresetListsThoseThereAre) {
 }
 
 TEST(Config, FilesBuildOnTheirParents) {
-  const auto path = std::filesystem::temp_directory_path() / "nerf_config_test.json";
+  const test::ScratchFolder scratch;
+  const auto path = scratch.path() / "config.json";
   std::ofstream(path) << R"({"parent": "fast", "train": {"steps": 12}})";
   const Config config = LoadConfig(path.string(), {});
   EXPECT_EQ(config.train.steps, 12);
@@ -80,7 +83,8 @@ TEST(Config, FilesBuildOnTheirParents) {
   EXPECT_THAT(ErrorOf(path.string(), {}), HasSubstr("own parent"));
   std::ofstream(path) << R"({"train": )";
   EXPECT_THAT(ErrorOf(path.string(), {}), HasSubstr("not valid JSON"));
-  std::filesystem::remove(path);
+  std::ofstream(path) << R"({"march": {"far_distance": 1e999}})";
+  EXPECT_THAT(ErrorOf(path.string(), {}), HasSubstr("out of range"));
 }
 
 TEST(Config, JsonComesBack) {

@@ -20,10 +20,9 @@ TEST(AdamStep, MatchesThePublishedAlgorithm) {
     v = 0.99 * v + 0.01 * g * g;
     const double m_hat = m / (1 - std::pow(0.9, step)), v_hat = v / (1 - std::pow(0.99, step));
     p -= 0.01 * m_hat / (std::sqrt(v_hat) + 1e-15);
-    adam.bias_correction1 = static_cast<float>(1 - std::pow(0.9, step));
-    adam.bias_correction2 = static_cast<float>(1 - std::pow(0.99, step));
-    const std::vector<float> gradient = {static_cast<float>(g)};
-    EXPECT_TRUE(AdamStep(adam, parameter, gradient, first, second));
+    std::vector<float> gradient = {static_cast<float>(g)};
+    EXPECT_TRUE(AdamStep(adam, BiasCorrection(adam, step), parameter, gradient, first, second));
+    EXPECT_EQ(gradient[0], 0.0f);
     EXPECT_NEAR(parameter[0], p, 1e-5);
   }
 }
@@ -32,9 +31,21 @@ TEST(AdamStep, AnEntryWithoutGradientStaysWhereItIs) {
   AdamCoefficients adam;
   adam.learning_rate = 0.01f;
   std::vector<float> parameter = {0.5f}, first = {0.0f}, second = {0.0f};
-  const std::vector<float> gradient = {0.0f};
-  EXPECT_TRUE(AdamStep(adam, parameter, gradient, first, second));
+  std::vector<float> gradient = {0.0f};
+  EXPECT_TRUE(AdamStep(adam, BiasCorrection(adam, 1), parameter, gradient, first, second));
   EXPECT_EQ(parameter[0], 0.5f);
+}
+
+TEST(AdamStep, BiasCorrectionsEndWhereTheyAreOne) {
+  const auto corrections = BiasCorrections({});
+  EXPECT_EQ(corrections[0].first, 0.0f);
+  for (std::size_t n = 1; n < corrections.size(); ++n) {
+    EXPECT_NEAR(corrections[n].first, 1 - std::pow(static_cast<double>(0.9f), n), 1e-6);
+    EXPECT_NEAR(corrections[n].second, 1 - std::pow(static_cast<double>(0.99f), n), 1e-6);
+  }
+  EXPECT_EQ(corrections.back().first, 1.0f);
+  EXPECT_EQ(corrections.back().second, 1.0f);
+  EXPECT_LT(corrections.size(), 3000u);
 }
 
 TEST(AdamStep, TellsWhenAGradientIsNotFinite) {
@@ -44,7 +55,7 @@ TEST(AdamStep, TellsWhenAGradientIsNotFinite) {
     for (std::size_t at = 0; at < 37; ++at) {
       std::vector<float> parameter(37, 1.0f), gradient(37, 0.1f), first(37), second(37);
       gradient[at] = bad;
-      EXPECT_FALSE(AdamStep({}, parameter, gradient, first, second));
+      EXPECT_FALSE(AdamStep({}, {}, parameter, gradient, first, second));
     }
   }
 }

@@ -219,6 +219,38 @@ TEST(VolumeRendering, GradientsDeepInTheRayKeepTheirSign) {
   }
 }
 
+// With a radiance of (g, 0, 0) and no background the red of the pixel is the sum of w_i g_i.
+TEST(Weights, AreThoseOfTheRenderingIntegralAndSoAreTheirGradients) {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  const std::vector<std::int64_t> begin = {0, 7, 7, 30};
+  std::vector<float> sigma(30), dt(30), g(30), radiance(90, 0.0f), weights(30), dL_dsigma(30);
+  for (int i = 0; i < 30; ++i) {
+    sigma[i] = i == 12 ? std::numeric_limits<float>::infinity() : 5 * uniform(generator);
+    dt[i] = i == 5 ? 0.0f : uniform(generator);
+    g[i] = uniform(generator) - 0.5f;
+    radiance[3 * i] = g[i];
+  }
+  WeightsForward<float>(begin, sigma, dt, weights, 0, 3);
+  WeightsBackward<float>(begin, sigma, dt, g, dL_dsigma, 0, 3);
+
+  const std::vector<float> background(9, 0.0f), zeros(3, 0.0f), ones = {1, 0, 0, 1, 0, 0, 1, 0, 0};
+  std::vector<float> rgb(9), opacity(3), depth(3), expected(30), unused(90), unused_background(9);
+  const RaySegments<float> in = {begin, sigma, dt, dt, radiance, background};
+  CompositeForward<float>(in, {rgb, opacity, depth}, 0, 3);
+  CompositeBackward<float>(in, {ones, zeros, zeros}, {expected, unused, unused_background}, 0, 3);
+  for (int ray = 0; ray < 3; ++ray) {
+    double red = 0, sum = 0;
+    for (std::int64_t i = begin[ray]; i < begin[ray + 1]; ++i) {
+      red += static_cast<double>(weights[i]) * static_cast<double>(g[i]);
+      sum += static_cast<double>(weights[i]);
+    }
+    EXPECT_NEAR(red, rgb[3 * ray], 1e-6);
+    EXPECT_NEAR(sum, opacity[ray], 1e-6);
+  }
+  for (int i = 0; i < 30; ++i) EXPECT_NEAR(dL_dsigma[i], expected[i], 1e-6) << i;
+}
+
 TEST(CountVisible, StopsWhereTooLittleLightGetsThrough) {
   const std::vector<std::int64_t> begin = {0, 10, 10, 13};
   const std::vector<float> sigma(13, 2.0f), dt(13, 1.0f);

@@ -7,6 +7,9 @@
 #include <map>
 #include <string>
 
+#include "nerf/field/proposal_field.h"
+#include "nerf/field/radiance_field.h"
+#include "nerf/sampling/occupancy_grid.h"
 #include "nerf/train/non_finite_error.h"
 #include "tests/support/central_differences.h"
 
@@ -16,11 +19,14 @@ namespace {
 struct Fixture {
   std::shared_ptr<RadianceField> field;
   std::shared_ptr<OccupancyGrid> grid;
+  std::shared_ptr<ProposalField> proposal;
+  ProposalOptions proposal_options;
   MarchOptions march;
   std::shared_ptr<LibTorchEngine> engine;
   TargetBatch batch;
 
-  explicit Fixture(torch::Dtype dtype, double stop_transmittance = 1e-9) {
+  explicit Fixture(torch::Dtype dtype, double stop_transmittance = 1e-9,
+                   bool with_proposal = false) {
     kernels::HashGridOptions encoding;
     encoding.levels = 3;
     encoding.log2_table_size = 9;
@@ -43,8 +49,17 @@ struct Fixture {
     OccupancyOptions occupancy;
     occupancy.resolution = 8;
     grid = std::make_shared<OccupancyGrid>(occupancy, march.StepLength());
-    engine = std::make_shared<LibTorchEngine>(field, grid, march, LossOptions(),
-                                              GradientScalingOptions{0.0});
+    if (with_proposal) {
+      proposal_options.intervals = 12;
+      proposal_options.samples = 8;
+      proposal_options.distortion = 0.1;
+      proposal_options.encoding = encoding;
+      proposal = std::make_shared<ProposalField>(proposal_options, 6);
+      proposal->to(dtype);
+    }
+    engine =
+        std::make_shared<LibTorchEngine>(EngineParts{field, grid, proposal, march, proposal_options,
+                                                     LossOptions(), GradientScalingOptions{0.0}});
     constexpr int kRays = 6;
     batch.rays.Resize(kRays);
     for (int r = 0; r < kRays; ++r) {

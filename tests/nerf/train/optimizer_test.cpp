@@ -28,18 +28,52 @@ TEST(Adam, GivesTheNumbersOfLibTorchsOwn) {
     (ours - target).square().sum().backward();
     reference.zero_grad();
     (theirs - target).square().sum().backward();
-    adam.Step(1.0);
+    adam.step();
     reference.step();
     EXPECT_TRUE(torch::allclose(ours, theirs, 1e-4, 1e-6)) << "step " << step;
-    EXPECT_FALSE(ours.grad().defined());
+    EXPECT_EQ(ours.grad().abs().max().item<float>(), 0.0f) << "made ready for the next step";
   }
 }
 
-TEST(Adam, TablesDoNotDecay) {
-  torch::Tensor table = torch::ones({4, 2}).requires_grad_();
-  Adam adam({{"hash_encoding.table", table}}, Options());
-  adam.Step(1.0);
-  EXPECT_TRUE(torch::equal(table, torch::ones({4, 2})));
+// An entry that only some steps touch moves as if the others had not been.
+TEST(Adam, EachEntryOfATableCountsItsOwnSteps) {
+  for (const int features : {1, 2, 4, 8}) {
+    torch::manual_seed(1);
+    torch::Tensor table = torch::ones({3, features}).requires_grad_();
+    Adam adam({{"hash_encoding.table", table}}, Options());
+    OptimizerOptions options = Options();
+    options.weight_decay = 0;
+    torch::Tensor often = torch::ones({features}).requires_grad_();
+    torch::Tensor seldom = often.detach().clone().requires_grad_();
+    Adam of_often({{"w", often}}, options), of_seldom({{"w", seldom}}, options);
+    for (int step = 0; step < 30; ++step) {
+      torch::Tensor gradient = torch::randn({3, features});
+      gradient[2].zero_();
+      often.mutable_grad() = gradient[0].clone();
+      of_often.step();
+      if (step >= 10 && step % 3 == 0) {
+        seldom.mutable_grad() = gradient[1].clone();
+        of_seldom.step();
+      } else {
+        gradient[1].zero_();
+      }
+      table.mutable_grad() = gradient;
+      adam.step();
+      EXPECT_EQ(gradient.abs().max().item<float>(), 0.0f);
+    }
+    EXPECT_TRUE(torch::allclose(table[0], often, 1e-5, 1e-6));
+    EXPECT_TRUE(torch::allclose(table[1], seldom, 1e-5, 1e-6));
+    EXPECT_TRUE(torch::equal(table[2], torch::ones({features}))) << "nothing touched it";
+  }
+}
+
+TEST(Adam, AnEntryWithOneFeatureUntouchedIsTouched) {
+  torch::Tensor table = torch::ones({1, 4}).requires_grad_();
+  Adam adam({{"table", table}}, Options());
+  table.mutable_grad() = torch::tensor({{0.0f, 0.0f, 0.0f, 1.0f}});
+  adam.step();
+  EXPECT_EQ(table[0][0].item<float>(), 1.0f);
+  EXPECT_LT(table[0][3].item<float>(), 1.0f);
 }
 
 TEST(Adam, GoesOnFromItsSavedState) {
@@ -47,7 +81,7 @@ TEST(Adam, GoesOnFromItsSavedState) {
   const auto train = [&](Adam& adam, torch::Tensor& x, int from, int to) {
     for (int step = from; step < to; ++step) {
       x.mutable_grad() = gradient(step);
-      adam.Step(1.0);
+      adam.step();
     }
   };
   torch::Tensor straight = torch::ones({5}).requires_grad_();
@@ -67,13 +101,20 @@ TEST(Adam, GoesOnFromItsSavedState) {
 
 TEST(Adam, NamesTheParameterWhoseGradientIsNotFinite) {
   torch::Tensor x = torch::ones({5}).requires_grad_();
-  Adam adam({{"some.weight", x}}, Options());
-  x.mutable_grad() = torch::full({5}, NAN);
-  try {
-    adam.Step(1.0);
-    FAIL();
-  } catch (const NonFiniteError& error) {
-    EXPECT_NE(std::string(error.what()).find("some.weight"), std::string::npos);
+  torch::Tensor table = torch::ones({5, 2}).requires_grad_();
+  for (const auto& [name, parameter] :
+       {std::pair<std::string, torch::Tensor>{"some.weight", x}, {"some.table", table}}) {
+    for (const float bad : {NAN, INFINITY}) {
+      Adam adam({{name, parameter}}, Options());
+      parameter.mutable_grad() = torch::zeros_like(parameter);
+      parameter.mutable_grad().view(-1)[3] = bad;
+      try {
+        adam.step();
+        FAIL();
+      } catch (const NonFiniteError& error) {
+        EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+      }
+    }
   }
 }
 

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "nerf/field/proposal_field.h"
+#include "nerf/render/density_tile.h"
+#include "nerf/sampling/ray_marcher.h"
+#include "nerf/sampling/rays.h"
+
+namespace nerf {
+
+// The rays of a tile as the proposal saw them, and what the way back needs.
+struct ProposalTile {
+  std::vector<float> edges;             // [R, samples + 1]
+  std::vector<float> coarse_edges;      // [R, intervals + 1]
+  std::vector<float> position, t, dt;   // of the coarse samples
+  std::vector<std::int64_t> ray_begin;  // [R+1] of the coarse samples
+  std::vector<float> weights, dL_dweights, dL_dsigma, places;
+  DensityTile density;
+};
+
+// ProposeSamples and ProposalLoss (proposal_sampling.h) for tiles of rays.
+class TileProposal {
+ public:
+  TileProposal(std::shared_ptr<ProposalField> proposal, const ProposalOptions& options,
+               const MarchOptions& march);
+
+  void Refresh();
+
+  // Places the samples of rays [first, last): options.samples a ray.
+  void Propose(const RayBatch& rays, std::int64_t first, std::int64_t last, ProposalTile& tile,
+               RaySamples& samples) const;
+
+  // The gradients of the proposal's loss and of the distortion, each ray's divided by `rays`.
+  //   ray_begin, sigma, dt  the visible samples, the front of each ray's proposed ones
+  //   dL_dsigma             [S] the distortion's part is added to it
+  void Backward(std::int64_t rays, std::span<const std::int64_t> ray_begin,
+                std::span<const float> sigma, std::span<const float> dt, ProposalTile& tile,
+                std::span<float> dL_dsigma, DensityGradients& gradients) const;
+
+  void Clear(DensityGradients& gradients) const { density_.Clear(gradients); }
+  void AddToParameters(std::span<const DensityGradients* const> gradients) {
+    density_.AddToParameters(gradients);
+  }
+  int SamplesPerRay() const { return options_.samples; }
+  int IntervalsPerRay() const { return options_.intervals; }
+
+ private:
+  std::shared_ptr<ProposalField> proposal_;
+  ProposalOptions options_;
+  MarchOptions march_;
+  TileDensity density_;
+};
+
+}  // namespace nerf

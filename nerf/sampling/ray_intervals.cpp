@@ -1,0 +1,106 @@
+#include "nerf/sampling/ray_intervals.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "nerf/sampling/contraction.h"
+
+namespace nerf {
+namespace {
+
+// Of a distance behind near.
+float PlaceBehindNear(float t) { return t < 1 ? t : 2 - 1 / t; }
+float DistanceOfPlace(float place) { return place < 1 ? place : 1 / (2 - place); }
+
+}  // namespace
+
+float RayPlace(float t, const MarchOptions& options) {
+  const auto near = static_cast<float>(options.near_distance);
+  return PlaceBehindNear(t - near) /
+         PlaceBehindNear(static_cast<float>(options.far_distance) - near);
+}
+
+void EqualIntervals(const RayBatch& rays, std::int64_t r, const MarchOptions& options,
+                    std::span<float> edges) {
+  const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
+  const auto near = static_cast<float>(options.near_distance);
+  const auto far = static_cast<float>(options.far_distance);
+  // Knots stand evenly in place, where speed times dt/dplace is smooth as far as the eye can see:
+  // beyond the unit ball the contraction slows down as fast as 1/t places reach out.
+  constexpr int kKnots = 32;
+  std::array<float, kKnots + 1> length{};
+  const float step = PlaceBehindNear(far - near) / kKnots;
+  float before = 0;
+  for (int k = 0; k <= kKnots; ++k) {
+    const float place = step * static_cast<float>(k);
+    const float t = near + DistanceOfPlace(place);
+    const float dt_dplace = place < 1 ? 1 : 1 / ((2 - place) * (2 - place));
+    const float speed = ContractedSpeed(origin + t * direction, direction) * dt_dplace;
+    if (k > 0) length[k] = length[k - 1] + 0.5f * (before + speed) * step;
+    before = speed;
+  }
+  const auto intervals = static_cast<std::int64_t>(edges.size()) - 1;
+  int k = 0;
+  for (std::int64_t i = 1; i < intervals; ++i) {
+    const float share =
+        (static_cast<float>(i) + rays.jitter[r] - 0.5f) / static_cast<float>(intervals);
+    const float wanted = share * length[kKnots];
+    while (k + 1 < kKnots && length[k + 1] < wanted) ++k;
+    const float own = length[k + 1] - length[k];
+    const float fraction = own > 0 ? std::clamp((wanted - length[k]) / own, 0.0f, 1.0f) : 0.5f;
+    edges[i] = std::min(near + DistanceOfPlace(step * (static_cast<float>(k) + fraction)), far);
+  }
+  edges.front() = near;
+  edges.back() = far;
+}
+
+void ResampleIntervals(std::span<const float> edges, std::span<const float> weights, float padding,
+                       float jitter, std::span<float> out) {
+  const std::size_t intervals = weights.size();
+  double sum = 0;
+  for (const float weight : weights) sum += static_cast<double>(weight);
+  // A histogram without weight, as of a ray through empty space, is an even one.
+  const double scale = sum > 0 ? 1.0 / sum : 0.0;
+  const double share = 1.0 / static_cast<double>(intervals);
+  const double even = sum > 0 ? static_cast<double>(padding) * share : share;
+  const double total = (sum > 0 ? 1.0 : 0.0) + even * static_cast<double>(intervals);
+
+  const auto places = static_cast<double>(out.size());
+  std::size_t i = 0;
+  double before = 0;  // weight in front of interval i
+  double own = static_cast<double>(weights[0]) * scale + even;
+  for (std::size_t m = 0; m < out.size(); ++m) {
+    const double wanted = total * (static_cast<double>(m) + static_cast<double>(jitter)) / places;
+    while (i + 1 < intervals && before + own < wanted) {
+      before += own;
+      ++i;
+      own = static_cast<double>(weights[i]) * scale + even;
+    }
+    const auto fraction = static_cast<float>(std::clamp((wanted - before) / own, 0.0, 1.0));
+    out[m] = edges[i] + fraction * (edges[i + 1] - edges[i]);
+  }
+}
+
+void CutByWeights(std::span<const float> edges, std::span<const float> weights, float trust,
+                  float padding, float jitter, std::span<float> out) {
+  if (trust >= 1) return ResampleIntervals(edges, weights, padding, jitter, out);
+  constexpr std::size_t kMost = 1024;
+  std::array<float, kMost> tempered{};
+  for (std::size_t i = 0; i < weights.size(); ++i) tempered[i] = std::pow(weights[i], trust);
+  ResampleIntervals(edges, std::span(tempered).first(weights.size()), padding, jitter, out);
+}
+
+void PackIntervalsOfRay(const RayBatch& rays, std::int64_t r, std::span<const float> edges,
+                        std::span<float> position, std::span<float> t, std::span<float> dt) {
+  const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    t[i] = 0.5f * (edges[i] + edges[i + 1]);
+    dt[i] = edges[i + 1] - edges[i];
+    const Eigen::Vector3f x_in_cube = UnitCubeFromContracted(Contract(origin + t[i] * direction));
+    std::copy_n(x_in_cube.data(), 3, &position[3 * i]);
+  }
+}
+
+}  // namespace nerf

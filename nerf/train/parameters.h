@@ -1,0 +1,17 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nerf/train/model.h"
+
+namespace nerf {
+
+// All that an optimiser moves, by the names that checkpoints use. Apart from model.h, which the
+// commands read, because LibTorch's headers take seconds to compile.
+std::vector<std::pair<std::string, torch::Tensor>> NamedParameters(const Model& model);
+
+}  // namespace nerf
