@@ -14,13 +14,15 @@ struct AdamCoefficients {
   float weight_decay = 0;  // L2 penalty, added to the gradient
 };
 
-// What moments that started at 0 are divided by after a number of steps: 1 - beta^steps.
+// What moments that started at 0 are multiplied by after a number of steps, at least 1.
 struct AdamBiasCorrection {
-  float first = 1, second = 1;
+  float first = 1;        // 1 / (1 - beta1^steps)
+  float root_second = 1;  // 1 / sqrt(1 - beta2^steps), of the second moment's root
 };
 AdamBiasCorrection BiasCorrection(const AdamCoefficients& adam, std::int64_t steps);
 
-// The corrections after 0, 1, 2, ... steps, until they have become 1 and stay there.
+// The corrections after 1 (in the second place), 2, 3, ... steps, until they have become 1 and
+// stay.
 std::vector<AdamBiasCorrection> BiasCorrections(const AdamCoefficients& adam);
 
 // One step of Adam in a single pass over memory. Source: Kingma and Ba 2015, algorithm 1.

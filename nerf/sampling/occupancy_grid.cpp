@@ -17,6 +17,9 @@ constexpr std::uint64_t kOffsetStream = 0x6f63635f6f666673ull;
 
 constexpr float kNeverSeen = -1.0f;
 
+constexpr int kBlock = 4;
+constexpr std::uint8_t kFarthestBlock = 255;
+
 }  // namespace
 
 void OccupancyOptions::Check() const {
@@ -40,6 +43,50 @@ OccupancyGrid::OccupancyGrid(const OccupancyOptions& options, float step_length)
   const std::int64_t n = options.resolution;
   density_.assign(n * n * n, 0.0f);
   occupied_.assign(n * n * n, 1);
+  blocks_ = (options.resolution + kBlock - 1) / kBlock;
+  Decided();
+}
+
+float OccupancyGrid::FreeRadius(const Eigen::Vector3f& position) const {
+  const Eigen::Array3i block =
+      (position.array() * (static_cast<float>(options_.resolution) / kBlock))
+          .cast<int>()
+          .min(blocks_ - 1)
+          .max(0);
+  const int distance = block_distance_[(block[2] * blocks_ + block[1]) * blocks_ + block[0]];
+  // From anywhere in its block to the nearest face of a block that many blocks away.
+  return static_cast<float>(std::max(0, distance - 1) * kBlock) * 4.0f /
+         static_cast<float>(options_.resolution);
+}
+
+// The chessboard distance of blocks in two sweeps. Source: Rosenfeld and Pfaltz 1968.
+void OccupancyGrid::Decided() {
+  const int n = options_.resolution, b = blocks_;
+  block_distance_.assign(static_cast<std::size_t>(b) * b * b, kFarthestBlock);
+  const auto at = [&](int x, int y, int z) -> std::uint8_t& {
+    return block_distance_[(static_cast<std::size_t>(z) * b + y) * b + x];
+  };
+  for (int z = 0; z < n; ++z) {
+    for (int y = 0; y < n; ++y) {
+      const std::uint8_t* row = &occupied_[(static_cast<std::size_t>(z) * n + y) * n];
+      for (int x = 0; x < n; ++x) {
+        if (row[x]) at(x / kBlock, y / kBlock, z / kBlock) = 0;
+      }
+    }
+  }
+  // The 13 neighbours that come before a block, and as their mirror those behind.
+  const auto relax = [&](int x, int y, int z, int sign) {
+    int least = at(x, y, z);
+    for (int k = 0; k < 13; ++k) {
+      const int nx = x + sign * (k % 3 - 1), ny = y + sign * (k / 3 % 3 - 1),
+                nz = z + sign * (k / 9 - 1);
+      if (nx < 0 || ny < 0 || nz < 0 || nx >= b || ny >= b || nz >= b) continue;
+      least = std::min(least, at(nx, ny, nz) + 1);
+    }
+    at(x, y, z) = static_cast<std::uint8_t>(least);
+  };
+  for (int i = 0; i < b * b * b; ++i) relax(i % b, i / b % b, i / (b * b), 1);
+  for (int i = b * b * b - 1; i >= 0; --i) relax(i % b, i / b % b, i / (b * b), -1);
 }
 
 std::int64_t OccupancyGrid::CellOf(const Eigen::Vector3f& position) const {
@@ -72,6 +119,7 @@ void OccupancyGrid::KeepVisible(const std::function<bool(const Eigen::Vector3f&,
                   occupied_[cell] = density_[cell] == 0.0f;
                 }
               });
+  Decided();
 }
 
 void OccupancyGrid::Update(std::int64_t step, std::uint64_t seed, const DensityFunction& density) {
@@ -119,6 +167,7 @@ void OccupancyGrid::Refresh() {
   for (std::size_t cell = 0; cell < density_.size(); ++cell) {
     occupied_[cell] = density_[cell] != kNeverSeen && density_[cell] >= bound;
   }
+  Decided();
 }
 
 double OccupancyGrid::OccupiedFraction() const {

@@ -35,6 +35,10 @@ class OccupancyGrid {
     return cell >= 0 && occupied_[cell] != 0;
   }
 
+  // How far all cells are empty about a position in an empty cell, in units of contracted space; 0
+  // next to matter. Found block by block, so a bound and not the distance itself.
+  float FreeRadius(const Eigen::Vector3f& position) const;
+
   // Cells for which `visible(centre and half diagonal of the cell, in the unit cube)` is false are
   // empty for good: what no training photograph sees cannot be learned, only dreamt.
   void KeepVisible(const std::function<bool(const Eigen::Vector3f&, float)>& visible);
@@ -53,6 +57,7 @@ class OccupancyGrid {
   void Refresh();  // decides from Density() which cells are occupied
 
  private:
+  void Decided();  // brings what follows from occupied_ up to date
   std::int64_t CellOf(const Eigen::Vector3f& position) const;
   Eigen::Vector3f CellCorner(std::int64_t cell) const;
 
@@ -60,6 +65,8 @@ class OccupancyGrid {
   float step_length_;
   std::vector<float> density_;
   std::vector<std::uint8_t> occupied_;
+  int blocks_;                                // along an axis, of kBlock cells each way
+  std::vector<std::uint8_t> block_distance_;  // blocks to the nearest with an occupied cell, 0: has
 };
 
 }  // namespace nerf

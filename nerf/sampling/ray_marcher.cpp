@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 
 #include "nerf/parallel.h"
 #include "nerf/sampling/contraction.h"
@@ -9,26 +10,65 @@
 
 namespace nerf {
 
+namespace {
+
+// Far out along the ray the contracted point hardly moves; without a bound one step would be longer
+// than everything before it.
+constexpr float kSlowest = 1e-6f;
+
+// At most how much faster than x the contracted point moves, r = |x|: the tangential speed, which
+// falls with r. Radially it is 1/r^2.
+float FastestSpeed(float r) { return r <= 1 ? 1.0f : (2.0f - 1.0f / r) / r; }
+
+// ContractedSpeed for points that are no farther out than poses can be: without its care for
+// squares that overflow.
+float Speed(const Eigen::Vector3f& x, const Eigen::Vector3f& direction) {
+  const float square = x.squaredNorm();
+  if (square <= 1.0f) return 1.0f;
+  const float inverse = 1.0f / std::sqrt(square);
+  const float radial = x.dot(direction) * inverse;
+  const float along = radial * inverse * inverse;
+  const float across = (2.0f - inverse) * inverse;
+  return std::sqrt(along * along + across * across * std::max(0.0f, 1.0f - radial * radial));
+}
+
+Eigen::Vector3f InCube(const Eigen::Vector3f& x) {
+  const float square = x.squaredNorm();
+  if (square <= 1.0f) return UnitCubeFromContracted(x);
+  const float inverse = 1.0f / std::sqrt(square);
+  return UnitCubeFromContracted(((2.0f - inverse) * inverse) * x);
+}
+
+}  // namespace
+
 void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
               const MarchOptions& options, RaySamples& out) {
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
   const float step = options.StepLength();
-  // Far out along the ray the contracted point hardly moves; without a bound one step would be
-  // longer than everything before it.
-  constexpr float kSlowest = 1e-6f;
   const auto far_distance = static_cast<float>(options.far_distance);
+  const float nearest = -origin.dot(direction);  // where the ray passes the centre
   auto t = static_cast<float>(options.near_distance);
   float fraction = 1.0f - rays.jitter[r];
   while (t < far_distance) {
-    const float speed = ContractedSpeed(origin + t * direction, direction);
+    const float speed = Speed(origin + t * direction, direction);
     const float dt = std::min(fraction * step / std::max(speed, kSlowest), far_distance - t);
     fraction = 1.0f;
     const float middle = t + 0.5f * dt;
-    const Eigen::Vector3f x_in_cube = UnitCubeFromContracted(Contract(origin + middle * direction));
+    const Eigen::Vector3f x_in_cube = InCube(origin + middle * direction);
     if (grid.Occupied(x_in_cube)) {
       out.position.insert(out.position.end(), {x_in_cube[0], x_in_cube[1], x_in_cube[2]});
       out.t.push_back(middle);
       out.dt.push_back(dt);
+    } else if (const float free = grid.FreeRadius(x_in_cube); free > 2 * step) {
+      // Over what is empty in one go: as far as the fastest speed on the way allows, which is that
+      // of its innermost point.
+      const auto reach = [&](float at) {
+        return free / std::max(FastestSpeed((origin + at * direction).norm()), kSlowest);
+      };
+      const float guess = middle + reach(middle);
+      const float innermost = std::clamp(nearest, middle, guess);
+      t = std::max(t + dt, middle + reach(innermost));
+      continue;
     }
     // Even where a step is too short for the precision of t, the ray must move on.
     t = std::max(t + dt, std::nextafter(t, far_distance));
@@ -36,9 +76,9 @@ void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
 }
 
 void MarchOptions::Check() const {
-  if (sampler != "occupancy" && sampler != "proposal") {
-    throw sfm::InputError("config: march.sampler is \"{}\"; use \"occupancy\" or \"proposal\"",
-                          sampler);
+  if (sampler != "auto" && sampler != "occupancy" && sampler != "proposal") {
+    throw sfm::InputError(
+        "config: march.sampler is \"{}\"; use \"auto\", \"occupancy\" or \"proposal\"", sampler);
   }
   if (!(near_distance >= 0 && near_distance < far_distance && far_distance <= 1e6f)) {
     throw sfm::InputError(
@@ -53,6 +93,10 @@ void MarchOptions::Check() const {
     throw sfm::InputError("config: march.stop_transmittance is {}; use a value between 0 and 1",
                           stop_transmittance);
   }
+}
+
+bool UsesProposal(const MarchOptions& options, bool scene_has_alpha) {
+  return options.sampler == "auto" ? !scene_has_alpha : options.sampler == "proposal";
 }
 
 PackedSamples MarchRays(const RayBatch& rays, const OccupancyGrid& grid,

@@ -10,11 +10,14 @@
 namespace nerf {
 
 struct MarchOptions {
-  std::string sampler = "occupancy";  // what places samples: the grid, or a "proposal" field
-  double near_distance = 0.05;        // first sample, in normalized scene units
-  double far_distance = 100.0;        // last sample, in normalized scene units
-  int steps_per_unit = 64;            // steps in a unit of contracted space
-  double stop_transmittance = 1e-4;   // a ray ends where less light than this gets through
+  // What places samples: the "occupancy" grid, a "proposal" field, or by "auto" the grid for
+  // objects cut out by alpha, whose surroundings are empty, and a proposal for what has a
+  // background.
+  std::string sampler = "auto";
+  double near_distance = 0.05;       // first sample, in normalized scene units
+  double far_distance = 100.0;       // last sample, in normalized scene units
+  int steps_per_unit = 64;           // steps in a unit of contracted space
+  double stop_transmittance = 1e-4;  // a ray ends where less light than this gets through
 
   void Check() const;
   float StepLength() const { return 1.0f / static_cast<float>(steps_per_unit); }
@@ -27,6 +30,9 @@ struct RaySamples {
 
   std::int64_t Size() const { return static_cast<std::int64_t>(t.size()); }
 };
+
+// Whether a proposal field places the samples.
+bool UsesProposal(const MarchOptions& options, bool scene_has_alpha);
 
 // Steps along a ray with a constant step in contracted space (so the step grows with the
 // distance outside the unit ball as the field's resolution falls) and keeps the samples that stand

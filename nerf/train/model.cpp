@@ -51,7 +51,7 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   model.field = std::make_shared<RadianceField>(config.encoding, config.field, scene.encoding,
                                                 config.train.seed);
   model.grid = std::make_shared<OccupancyGrid>(config.occupancy, config.march.StepLength());
-  if (config.march.sampler == "proposal") {
+  if (UsesProposal(config.march, scene.has_alpha)) {
     model.proposal = std::make_shared<ProposalField>(config.proposal, config.train.seed);
   }
   const EngineParts parts = {model.field,     model.grid,  model.proposal,         config.march,

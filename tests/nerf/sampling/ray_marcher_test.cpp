@@ -79,6 +79,39 @@ TEST(MarchRays, EmptyCellsAreSteppedOver) {
   }
 }
 
+// Whatever is occupied for more than a step on both sides of a point holds the middle of a step.
+TEST(MarchRays, NothingIsSteppedOverThatIsNotEmpty) {
+  MarchOptions options;
+  OccupancyGrid grid({.resolution = 64}, options.StepLength());
+  grid.KeepVisible([](const Eigen::Vector3f& centre, float) {
+    const Eigen::Array3i cell = (centre.array() * 9).cast<int>();
+    return RandomFloat(7, cell[0], 100 * cell[1] + cell[2]) < 0.1f;
+  });
+  const RayBatch rays = RandomRays(200);
+  const PackedSamples samples = MarchRays(rays, grid, options);
+  int checked = 0;
+  for (std::int64_t r = 0; r < rays.Size(); ++r) {
+    const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
+    const auto occupied = [&](float t) {
+      return grid.Occupied(UnitCubeFromContracted(Contract(origin + t * direction)));
+    };
+    for (float t = 0.1f; t < 20.0f; t *= 1.01f) {
+      const float dt =
+          1.1f * options.StepLength() / ContractedSpeed(origin + t * direction, direction);
+      bool solid = true;
+      for (int k = -8; k <= 8; ++k) solid = solid && occupied(t + dt * static_cast<float>(k) / 8);
+      if (!solid) continue;
+      ++checked;
+      bool covered = false;
+      for (std::int64_t i = samples.ray_begin[r]; i < samples.ray_begin[r + 1]; ++i) {
+        covered = covered || std::fabs(samples.t[i] - t) <= 0.51f * samples.dt[i];
+      }
+      EXPECT_TRUE(covered) << "ray " << r << ", t = " << t;
+    }
+  }
+  EXPECT_GT(checked, 500);
+}
+
 TEST(MarchRays, JitterShortensTheFirstStep) {
   const MarchOptions options;
   const OccupancyGrid grid(CoarseGrid(), options.StepLength());
