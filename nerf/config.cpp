@@ -14,7 +14,7 @@ using nlohmann::json;
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataOptions, downscale, test_every, validation_images)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldOptions, hidden_width, geometry_features, color_layers)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OccupancyOptions, resolution, decay, threshold, warmup_steps,
-                                   update_every)
+                                   update_every, coarse_to_fine_steps)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MarchOptions, sampler, near_distance, far_distance,
                                    steps_per_unit, stop_transmittance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LossOptions, kind, huber_delta)
@@ -22,9 +22,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GradientScalingOptions, full_distance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OptimizerOptions, learning_rate, beta1, beta2, epsilon,
                                    weight_decay)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScheduleOptions, warmup_steps, final_factor)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, engine, steps, coarse_to_fine_steps,
-                                   samples_per_batch, max_rays_per_batch, seed, checkpoint_every,
-                                   validate_every)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, engine, steps, samples_per_batch,
+                                   max_rays_per_batch, seed, checkpoint_every, validate_every)
 namespace kernels {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HashGridOptions, levels, features, log2_table_size,
                                    base_resolution, max_resolution)

@@ -35,6 +35,9 @@ void OccupancyOptions::Check() const {
   }
   if (warmup_steps < 0)
     throw sfm::InputError("config: occupancy.warmup_steps must not be negative");
+  if (coarse_to_fine_steps < 0) {
+    throw sfm::InputError("config: occupancy.coarse_to_fine_steps must not be negative");
+  }
   if (update_every < 1) throw sfm::InputError("config: occupancy.update_every must be at least 1");
 }
 

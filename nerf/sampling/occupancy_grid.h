@@ -14,6 +14,9 @@ struct OccupancyOptions {
   double threshold = 0.03;  // opacity of one marching step at which a cell counts as occupied
   int warmup_steps = 256;   // training steps during which empty cells are drawn as often as others
   int update_every = 16;    // training steps between updates
+  // Training steps until the field shows full detail (RadianceField::SetDetail). A proposal field
+  // needs no such thing: it is coarse itself.
+  int coarse_to_fine_steps = 1000;
 
   void Check() const;
 };

@@ -17,7 +17,7 @@ struct Checkpoint {
 
 // The file: 8 bytes "NERFCKPT", uint32 version, uint32 CRC-32 of the payload, uint64 size of the
 // payload, then the payload, a LibTorch archive (a zip that torch::load reads too). Little endian.
-inline constexpr std::uint32_t kCheckpointVersion = 1;
+inline constexpr std::uint32_t kCheckpointVersion = 2;
 
 // Written atomically: after a kill or on a full disk the file that stood there before still stands.
 // Throws sfm::InputError naming the file and the reason.

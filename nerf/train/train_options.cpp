@@ -60,9 +60,6 @@ void TrainOptions::Check() const {
     throw sfm::InputError("config: train.engine is \"{}\"; use \"fused\" or \"libtorch\"", engine);
   }
   if (steps < 1) throw sfm::InputError("config: train.steps is {}; use 1 or more", steps);
-  if (coarse_to_fine_steps < 0) {
-    throw sfm::InputError("config: train.coarse_to_fine_steps must not be negative");
-  }
   if (samples_per_batch < 1 || samples_per_batch > (1 << 24)) {
     throw sfm::InputError("config: train.samples_per_batch is {}; use 1 to {}", samples_per_batch,
                           1 << 24);

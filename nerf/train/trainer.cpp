@@ -105,13 +105,11 @@ struct Trainer::State {
 
 StepResult Trainer::State::Step() {
   const TrainOptions& options = Options();
-  if (options.coarse_to_fine_steps > 0) {
-    model.field->SetDetail(static_cast<double>(step) /
-                           static_cast<double>(options.coarse_to_fine_steps));
-  }
   if (model.proposal) {
     const int anneal = model.config.proposal.anneal_steps;
     model.proposal->SetTrust(anneal > 0 ? static_cast<double>(step) / anneal : 1.0);
+  } else if (const int fade = model.config.occupancy.coarse_to_fine_steps; fade > 0) {
+    model.field->SetDetail(static_cast<double>(step) / fade);
   }
   try {
     if (step % model.config.occupancy.update_every == 0) {

@@ -36,7 +36,7 @@ Config SmallConfig() {
       "base",
       {"encoding.log2_table_size=13", "encoding.max_resolution=256", "field.hidden_width=32",
        "occupancy.resolution=48", "march.steps_per_unit=48", "march.near_distance=1",
-       "train.samples_per_batch=16384", "train.steps=400", "train.coarse_to_fine_steps=300",
+       "train.samples_per_batch=16384", "train.steps=400", "occupancy.coarse_to_fine_steps=300",
        "train.checkpoint_every=100", "train.validate_every=100"});
 }
 

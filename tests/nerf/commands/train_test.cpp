@@ -47,7 +47,7 @@ class TrainCommand : public testing::Test {
         "--set train.samples_per_batch=2048 --set train.validate_every=50 "
         "--set encoding.log2_table_size=12 --set field.hidden_width=16 "
         "--set occupancy.resolution=32 --set march.steps_per_unit=32 "
-        "--set train.coarse_to_fine_steps=50",
+        "--set occupancy.coarse_to_fine_steps=50",
         Poses(), Path(run));
   }
 
