@@ -154,13 +154,14 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads)
   RequireOwnFolder(run);
   sfm::FindInput(arguments.input);  // a wrong input must not leave an empty run behind
   sfm::MakeOutputFolder(run);
-  sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
 
   sfm::PosedImages found = FindPoses(arguments.input, run, threads);
   WarnOfMissing(found);
   AssignSplits(found, config.data);
   SceneFacts scene;
   scene.normalized_from_world = sfm::NormalizeScene(found);
+  // First, for it marks the folder as a run's own.
+  sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
   sfm::WriteTransformsJson(found, PosesPath(run));
   // Read back, so that a run which resumes starts from the same numbers to the last bit.
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
