@@ -11,7 +11,7 @@ namespace nerf {
 using nlohmann::json;
 
 // Each options struct's keys, once, for reading and writing.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataOptions, downscale, test_every, validation_images)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataOptions, downscale, test_every, validation_images, memory_mb)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldOptions, hidden_width, geometry_features, color_layers)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OccupancyOptions, resolution, decay, threshold, warmup_steps,
                                    update_every, coarse_to_fine_steps)

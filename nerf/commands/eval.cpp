@@ -18,8 +18,8 @@
 #include "nerf/data/image_metrics.h"
 #include "nerf/output/contact_sheet.h"
 #include "nerf/render/image_renderer.h"
-#include "nerf/train/engine.h"
 #include "nerf/train/run_folder.h"
+#include "nerf/train/view_renderer.h"
 #include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
 #include "sfm/progress.h"
@@ -33,6 +33,7 @@ struct EvalArguments {
   std::string run;
   std::string output;
   std::string split = "test";
+  double quality = 1;
   int threads = 0;
   bool json = false;
 };
@@ -76,6 +77,7 @@ nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& argumen
   }
   return {{"split", arguments.split},
           {"downscale", run.model.config.data.downscale},
+          {"quality", arguments.quality},
           {"step", run.step},
           {"training_seconds", run.training_seconds},
           {"psnr", JsonNumber(mean.psnr)},
@@ -99,6 +101,7 @@ void PrintTable(const std::vector<Score>& scores) {
 void RunEval(const EvalArguments& arguments) {
   UseThreads(arguments.threads);
   const OpenedRun run = OpenRun(arguments.run);
+  const std::shared_ptr<RayRenderer> renderer = ViewRenderer(run.model, arguments.quality);
   const fs::path output =
       arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
   sfm::MakeOutputFolder(output);
@@ -127,7 +130,7 @@ void RunEval(const EvalArguments& arguments) {
     }
     const auto begin = std::chrono::steady_clock::now();
     const RenderedView view =
-        RenderView(*run.model.engine, Downscaled(run.posed.cameras[image->camera], downscale),
+        RenderView(*renderer, Downscaled(run.posed.cameras[image->camera], downscale),
                    scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
                    DisplayBackground(scene.has_alpha), scene.encoding);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
@@ -170,6 +173,9 @@ void AddEvalCommand(CLI::App& app) {
                       "where eval.json and contact_sheet.png go [RUN/eval]");
   command->add_option("--split", arguments->split, "which images: test, validation, train")
       ->check(CLI::IsMember({"test", "validation", "train"}))
+      ->capture_default_str();
+  command->add_option("--quality", arguments->quality,
+                      "from 0, fast, to 1, all that training computes")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");

@@ -19,8 +19,8 @@
 #include "nerf/output/color_map.h"
 #include "nerf/output/video.h"
 #include "nerf/render/image_renderer.h"
-#include "nerf/train/engine.h"
 #include "nerf/train/run_folder.h"
+#include "nerf/train/view_renderer.h"
 #include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
 #include "sfm/progress.h"
@@ -43,6 +43,7 @@ struct RenderArguments {
   bool depth = false;
   bool opacity = false;
   bool no_video = false;
+  double quality = 1;
   int threads = 0;
 };
 
@@ -158,6 +159,7 @@ void RunRender(const RenderArguments& arguments) {
     throw sfm::InputError("--fps {}: use more than 0, at most 1000", *arguments.fps);
   }
   const OpenedRun run = OpenRun(arguments.run);
+  const std::shared_ptr<RayRenderer> renderer = ViewRenderer(run.model, arguments.quality);
   const SceneFacts& scene = run.model.scene;
   const ShotList list = ChooseShots(run, arguments);
   const fs::path output = arguments.output.empty()
@@ -172,7 +174,7 @@ void RunRender(const RenderArguments& arguments) {
   sfm::ProgressLine progress("rendering", pixels);
   for (const Shot& shot : list.shots) {
     const RenderedView view =
-        RenderView(*run.model.engine, shot.camera,
+        RenderView(*renderer, shot.camera,
                    scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
                    DisplayBackground(scene.has_alpha), scene.encoding,
                    [&](std::int64_t of_this) { progress.Update(done + of_this, shot.name); });
@@ -220,6 +222,9 @@ void AddRenderCommand(CLI::App& app) {
                     "also depth along the ray: EXR in the input's units, and a picture");
   command->add_flag("--opacity", arguments->opacity, "also opacity, as PNG");
   command->add_flag("--no-video", arguments->no_video, "make no MP4 of a path");
+  command->add_option("--quality", arguments->quality,
+                      "from 0, fast, to 1, all that training computes")
+      ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "Without --image, --pose or --path: the views of the held-out photographs.\n"

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "nerf/commands/interrupt.h"
 #include "nerf/commands/threads.h"
 #include "nerf/config.h"
+#include "nerf/data/camera.h"
 #include "nerf/data/dataset.h"
 #include "nerf/train/checkpoint.h"
 #include "nerf/train/run_folder.h"
@@ -99,18 +101,25 @@ sfm::PosedImages FindPoses(const fs::path& input, const fs::path& run, int threa
   return posed;
 }
 
-void PrintData(const sfm::PosedImages& posed, const Dataset& data, int threads) {
-  std::size_t held_out = 0;
-  for (const auto& image : posed.images) held_out += image.split == sfm::Split::kTest;
-  std::size_t bytes = 0;
-  for (const auto* views : {&data.train, &data.validation}) {
-    for (const View& view : *views) bytes += view.rgba.size() * sizeof(Eigen::half);
+// The first line, before anything large is read.
+void PrintPlan(const sfm::PosedImages& posed, const DataOptions& options, int threads) {
+  const DataPlan plan = PlanData(posed, options);
+  int width = 0, height = 0;
+  for (const auto& image : posed.images) {
+    const sfm::Camera camera = Downscaled(posed.cameras[image.camera], options.downscale);
+    width = std::max(width, camera.width);
+    height = std::max(height, camera.height);
   }
-  const sfm::Camera& camera = data.train.front().camera;
+  const std::string share =
+      plan.held == plan.pixels
+          ? ""
+          : fmt::format(", of every {:.3g} pixels one at random (data.memory_mb allows no more)",
+                        static_cast<double>(plan.pixels) / static_cast<double>(plan.held));
   fmt::print(
-      "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels, {} MB held\n",
-      threads, data.train.size(), data.validation.size(), held_out, camera.width, camera.height,
-      bytes >> 20);
+      "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels; {} MB of "
+      "pixels held{}\n",
+      threads, plan.train, plan.validation, plan.held_out, width, height, plan.Bytes() >> 20,
+      share);
   std::fflush(stdout);
 }
 
@@ -166,10 +175,10 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads)
   // Read back, so that a run which resumes starts from the same numbers to the last bit.
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
 
+  PrintPlan(posed, config.data, threads);
   const Dataset data = Load(posed, config.data, scene.normalized_from_world);
   scene.encoding = data.encoding;
   scene.has_alpha = data.has_alpha;
-  PrintData(posed, data, threads);
   Trainer trainer(config, scene, data, run);
   Report(trainer.Run(StopOnInterrupt()), run);
 }
@@ -188,8 +197,8 @@ void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads
   }
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
   WarnOfMissing(posed);
+  PrintPlan(posed, model.config.data, threads);
   const Dataset data = Load(posed, model.config.data, model.scene.normalized_from_world);
-  PrintData(posed, data, threads);
   Trainer trainer(checkpoint, data, run);
   Report(trainer.Run(StopOnInterrupt()), run);
 }

@@ -3,40 +3,61 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 
 #include "nerf/data/camera.h"
 #include "nerf/data/image_io.h"
 #include "nerf/parallel.h"
+#include "nerf/sampling/random.h"
 #include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
 
+constexpr std::int64_t kBytesPerPixel = 4 * sizeof(Eigen::half);
+
+std::int64_t PixelsOf(const sfm::Camera& camera) {
+  return static_cast<std::int64_t>(camera.width) * camera.height;
+}
+
 View MakeView(const sfm::PosedImages& posed, const sfm::PosedImage& image, const Image& pixels,
-              int downscale, const sfm::SceneNormalization& normalized_from_world) {
+              int downscale, const sfm::SceneNormalization& normalized_from_world,
+              const DataPlan& plan) {
   View view;
   view.name = image.name;
   view.camera = Downscaled(posed.cameras[image.camera], downscale);
   view.normalized_from_camera = normalized_from_world.NormalizedFromCamera(image.world_from_camera);
-  view.rgba.resize(static_cast<std::size_t>(pixels.width) * pixels.height * 4);
-  for (std::size_t i = 0; i < view.rgba.size() / 4; ++i) {
-    const float* from = &pixels.pixels[i * pixels.channels];
+  view.seed = static_cast<std::uint64_t>(&image - posed.images.data());
+  view.rgba.resize(4 * plan.HeldOf(PixelsOf(view.camera)));
+  for (std::int64_t k = 0; k < view.Held(); ++k) {
+    const float* from = &pixels.pixels[view.PixelOf(k) * pixels.channels];
     // The sun in an HDR image is brighter than a half can say.
     constexpr float kMostHalf = 65504.0f;
     for (int c = 0; c < 3; ++c) {
-      view.rgba[4 * i + c] = Eigen::half(std::clamp(from[c], -kMostHalf, kMostHalf));
+      view.rgba[4 * k + c] = Eigen::half(std::clamp(from[c], -kMostHalf, kMostHalf));
     }
-    view.rgba[4 * i + 3] = Eigen::half(pixels.channels == 4 ? from[3] : 1.0f);
+    view.rgba[4 * k + 3] = Eigen::half(pixels.channels == 4 ? from[3] : 1.0f);
   }
   return view;
 }
 
-bool HasTransparentPixel(const View& view) {
-  for (std::size_t i = 3; i < view.rgba.size(); i += 4) {
-    if (static_cast<float>(view.rgba[i]) < 1.0f) return true;
+bool HasTransparentPixel(const Image& image) {
+  if (image.channels != 4) return false;
+  for (std::size_t i = 3; i < image.pixels.size(); i += 4) {
+    if (image.pixels[i] < 1.0f) return true;
   }
   return false;
+}
+
+// How many photographs may be decoded at once: each takes a float image and another while it is
+// turned or reduced.
+std::int64_t Decoders(const sfm::PosedImages& posed, const DataOptions& options) {
+  std::int64_t largest = 1;
+  for (const auto& camera : posed.cameras) largest = std::max(largest, PixelsOf(camera));
+  const std::int64_t bytes = 2 * largest * 4 * static_cast<std::int64_t>(sizeof(float));
+  const std::int64_t fit = (static_cast<std::int64_t>(options.memory_mb) << 20) / bytes;
+  return std::clamp<std::int64_t>(fit, 1, NumThreads());
 }
 
 }  // namespace
@@ -51,6 +72,40 @@ void DataOptions::Check() const {
   if (validation_images < 0) {
     throw sfm::InputError("config: data.validation_images is {}; use 0 or more", validation_images);
   }
+  if (memory_mb < 1) throw sfm::InputError("config: data.memory_mb is {}; use 1 or more", memory_mb);
+}
+
+std::int64_t DataPlan::Bytes() const { return held * kBytesPerPixel; }
+
+std::int64_t DataPlan::HeldOf(std::int64_t pixels_of_photo) const {
+  if (held == pixels) return pixels_of_photo;
+  const double share = static_cast<double>(held) / static_cast<double>(pixels);
+  return std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(share * static_cast<double>(pixels_of_photo)));
+}
+
+DataPlan PlanData(const sfm::PosedImages& posed, const DataOptions& options) {
+  DataPlan plan;
+  for (const sfm::PosedImage& image : posed.images) {
+    if (image.split == sfm::Split::kTest) {
+      ++plan.held_out;
+      continue;
+    }
+    ++(image.split == sfm::Split::kValidation ? plan.validation : plan.train);
+    plan.pixels += PixelsOf(Downscaled(posed.cameras[image.camera], options.downscale));
+  }
+  const std::int64_t fit = (static_cast<std::int64_t>(options.memory_mb) << 20) / kBytesPerPixel;
+  plan.held = std::min(plan.pixels, fit);
+  return plan;
+}
+
+std::int64_t View::PixelOf(std::int64_t k) const {
+  const std::int64_t all = PixelsOf(camera), held = Held();
+  if (held == all) return k;
+  constexpr std::uint64_t kHeldStream = 0x68656c645f5f5f5full;
+  const std::int64_t begin = all * k / held, end = all * (k + 1) / held;
+  const std::uint64_t bits = RandomBits(seed, kHeldStream, static_cast<std::uint64_t>(k));
+  return begin + static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(end - begin));
 }
 
 void AssignSplits(sfm::PosedImages& posed, const DataOptions& options) {
@@ -101,17 +156,23 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
   struct Loaded {
     std::optional<View> view;
     ColorEncoding encoding = ColorEncoding::kSrgb;
+    bool has_alpha = false;
     std::string failure;
   };
+  const DataPlan plan = PlanData(posed, options);
   std::vector<Loaded> loaded(count);
-  ParallelFor(count, 1, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
+  const std::int64_t decoders = Decoders(posed, options);
+  std::atomic<std::int64_t> next = 0;
+  ParallelForEach(decoders, [&](std::int64_t) {
+    for (std::int64_t i = next++; i < count; i = next++) {
       const sfm::PosedImage& image = posed.images[i];
       if (image.split == sfm::Split::kTest) continue;
       try {
         const Image pixels = LoadPhotograph(posed, image, options.downscale);
         loaded[i].encoding = pixels.encoding;
-        loaded[i].view = MakeView(posed, image, pixels, options.downscale, normalized_from_world);
+        loaded[i].has_alpha = HasTransparentPixel(pixels);
+        loaded[i].view =
+            MakeView(posed, image, pixels, options.downscale, normalized_from_world, plan);
       } catch (const sfm::InputError& error) {
         loaded[i].failure = error.what();
       }
@@ -128,7 +189,7 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
           posed.images[i].path.string());
     }
     encoding = loaded[i].encoding;
-    data.has_alpha = data.has_alpha || HasTransparentPixel(*loaded[i].view);
+    data.has_alpha = data.has_alpha || loaded[i].has_alpha;
     auto& views = posed.images[i].split == sfm::Split::kValidation ? data.validation : data.train;
     views.push_back(std::move(*loaded[i].view));
   }

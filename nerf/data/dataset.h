@@ -17,6 +17,7 @@ struct DataOptions {
   int downscale = 1;          // area-average photographs by this factor
   int test_every = 8;         // hold out images 0, 8, 16, ... by name; 0 holds out none
   int validation_images = 1;  // taken out of the training images to watch the progress; 0: none
+  int memory_mb = 1024;       // for pixels; where they do not fit, an even random share is held
 
   void Check() const;
 };
@@ -26,12 +27,31 @@ struct DataOptions {
 // order of name. Scenes of fewer than 8 images hold out none, of fewer than 16 have no validation.
 void AssignSplits(sfm::PosedImages& posed, const DataOptions& options);
 
-// The photographs of one kind in memory, downscaled; RGBA as 16-bit floats: what training reads.
+// What training will hold, known before a photograph is read.
+struct DataPlan {
+  std::int64_t train = 0, validation = 0, held_out = 0;  // images
+  std::int64_t pixels = 0;                               // to train on and to validate, downscaled
+  std::int64_t held = 0;                                 // of them, within DataOptions::memory_mb
+
+  std::int64_t Bytes() const;
+  // Of the pixels of one photograph, at least one.
+  std::int64_t HeldOf(std::int64_t pixels_of_photo) const;
+};
+DataPlan PlanData(const sfm::PosedImages& posed, const DataOptions& options);
+
+// A photograph in memory, downscaled; RGBA as 16-bit floats: what training reads. Training draws a
+// few million pixels in all, so of photographs that do not fit a random share is as good: one pixel
+// of each of `held` stretches of equal length, row after row.
 struct View {
   std::string name;
   sfm::Camera camera;                        // of the downscaled image
   Eigen::Isometry3d normalized_from_camera;  // OpenCV axes
-  std::vector<Eigen::half> rgba;             // [height, width, 4], straight alpha
+  std::vector<Eigen::half> rgba;             // [held,4], straight alpha
+  std::uint64_t seed = 0;                    // of the choice
+
+  std::int64_t Held() const { return static_cast<std::int64_t>(rgba.size() / 4); }
+  // Where the held pixel k stands: y * width + x.
+  std::int64_t PixelOf(std::int64_t k) const;
 };
 
 struct Dataset {
@@ -42,7 +62,8 @@ struct Dataset {
   std::vector<std::string> skipped;  // photographs that could not be read, with the reason
 };
 
-// Reads the training and validation photographs on all threads. A photograph that cannot be read is
+// Reads the training and validation photographs on all threads, or on as many as can decode at once
+// within the memory that the options allow. A photograph that cannot be read is
 // named in `skipped` and left out. Throws sfm::InputError when none is left to train on, when sRGB
 // and linear images are mixed, or when an image is not of its camera's size.
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,

@@ -36,7 +36,7 @@ bool SetRay(RayBatch& rays, std::int64_t r, const sfm::Camera& camera,
 
 PixelSampler::PixelSampler(const std::vector<View>& views) : views_(views), first_pixel_{0} {
   for (const View& view : views) {
-    first_pixel_.push_back(first_pixel_.back() + static_cast<std::int64_t>(view.rgba.size() / 4));
+    first_pixel_.push_back(first_pixel_.back() + view.Held());
   }
 }
 
@@ -60,11 +60,11 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
             static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(first_pixel_.back()));
         const auto after = std::ranges::upper_bound(first_pixel_, global);
         const View& view = views_[after - first_pixel_.begin() - 1];
-        const std::int64_t pixel = global - *(after - 1);
+        const std::int64_t held = global - *(after - 1), pixel = view.PixelOf(held);
         const Eigen::Vector2d centre(static_cast<double>(pixel % view.camera.width) + 0.5,
                                      static_cast<double>(pixel / view.camera.width) + 0.5);
         if (!SetRay(batch.rays, r, view.camera, view.normalized_from_camera, centre)) continue;
-        const Eigen::half* rgba = &view.rgba[4 * pixel];
+        const Eigen::half* rgba = &view.rgba[4 * held];
         const auto alpha = static_cast<float>(rgba[3]);
         for (int c = 0; c < 3; ++c) {
           const float background =
@@ -86,15 +86,15 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
 }
 
 ViewRays RaysOfPixels(const sfm::Camera& camera, const Eigen::Isometry3d& normalized_from_camera,
-                      std::int64_t first_pixel, std::int64_t last_pixel,
+                      std::span<const std::int64_t> pixels,
                       const Eigen::Vector3f& background) {
   ViewRays out;
-  const std::int64_t count = last_pixel - first_pixel;
+  const auto count = static_cast<std::int64_t>(pixels.size());
   out.rays.Resize(count);
   out.valid.assign(count, 1);
   ParallelFor(count, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t r = begin; r < end; ++r) {
-      const std::int64_t pixel = first_pixel + r;
+      const std::int64_t pixel = pixels[r];
       const Eigen::Vector2d centre(static_cast<double>(pixel % camera.width) + 0.5,
                                    static_cast<double>(pixel / camera.width) + 0.5);
       out.valid[r] = SetRay(out.rays, r, camera, normalized_from_camera, centre);

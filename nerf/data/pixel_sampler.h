@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "nerf/data/dataset.h"
@@ -31,13 +32,14 @@ class PixelSampler {
 };
 
 // The rays through the centres of given pixels of a view, without jitter (0.5), on one background.
+//   pixels  [R] y * width + x
 // Pixels that the lens does not reach get `valid` 0 and a ray that must not be used.
 struct ViewRays {
   RayBatch rays;
   std::vector<std::uint8_t> valid;  // [R]
 };
 ViewRays RaysOfPixels(const sfm::Camera& camera, const Eigen::Isometry3d& normalized_from_camera,
-                      std::int64_t first_pixel, std::int64_t last_pixel,
+                      std::span<const std::int64_t> pixels,
                       const Eigen::Vector3f& background);
 
 }  // namespace nerf

@@ -1,42 +1,74 @@
 #include "nerf/render/image_renderer.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "nerf/data/pixel_sampler.h"
 
 namespace nerf {
+namespace {
+
+constexpr int kBlock = 4;   // pixels, the side of a block
+constexpr int kTile = 256;  // blocks that are rendered at once
+
+// The pixels of block number `block`, row after row of blocks, in an order in which every four in
+// succession are a square, too. Pixels beyond the edge are those at the edge once more.
+void AppendBlock(const sfm::Camera& camera, std::int64_t block, std::vector<std::int64_t>& pixels) {
+  const int across = (camera.width + kBlock - 1) / kBlock;
+  const auto left = static_cast<int>(block % across) * kBlock;
+  const auto top = static_cast<int>(block / across) * kBlock;
+  for (int i = 0; i < kBlock * kBlock; ++i) {
+    const int x = std::min(left + (i & 1) + (i >> 1 & 2), camera.width - 1);
+    const int y = std::min(top + (i >> 1 & 1) + (i >> 2 & 2), camera.height - 1);
+    pixels.push_back(static_cast<std::int64_t>(y) * camera.width + x);
+  }
+}
+
+// Pixels that the lens does not reach borrow the ray of a neighbour; they are painted over later.
+void LendRays(ViewRays& tile) {
+  std::int64_t lender = std::ranges::find(tile.valid, 1) - tile.valid.begin();
+  const std::int64_t count = tile.rays.Size();
+  for (std::int64_t r = 0; r < count; ++r) {
+    if (tile.valid[r]) lender = r;
+    if (tile.valid[r] || lender == count) continue;
+    std::copy_n(&tile.rays.origin[3 * lender], 3, &tile.rays.origin[3 * r]);
+    std::copy_n(&tile.rays.direction[3 * lender], 3, &tile.rays.direction[3 * r]);
+  }
+}
+
+}  // namespace
 
 RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
                         const Eigen::Isometry3d& normalized_from_camera,
                         const Eigen::Vector3f& background, ColorEncoding encoding,
                         const std::function<void(std::int64_t)>& progress) {
-  constexpr std::int64_t kTile = 4096;
   RenderedView view = {Image(camera.width, camera.height, 3, encoding),
                        Image(camera.width, camera.height, 1, ColorEncoding::kLinear),
                        Image(camera.width, camera.height, 1, ColorEncoding::kLinear)};
-  const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
-  for (std::int64_t first = 0; first < pixels; first += kTile) {
-    const std::int64_t last = std::min(pixels, first + kTile);
-    ViewRays tile = RaysOfPixels(camera, normalized_from_camera, first, last, background);
-    // Unreached pixels: a ray that starts beyond the scene and looks away meets nothing.
-    for (std::int64_t r = 0; r < last - first; ++r) {
-      if (tile.valid[r]) continue;
-      for (int c = 0; c < 3; ++c) {
-        tile.rays.origin[3 * r + c] = c == 0 ? 1e6f : 0.0f;
-        tile.rays.direction[3 * r + c] = c == 0 ? 1.0f : 0.0f;
+  const std::int64_t across = (camera.width + kBlock - 1) / kBlock;
+  const std::int64_t blocks = across * ((camera.height + kBlock - 1) / kBlock);
+  const std::int64_t all = static_cast<std::int64_t>(camera.width) * camera.height;
+  std::vector<std::int64_t> pixels;
+  for (std::int64_t first = 0; first < blocks; first += kTile) {
+    const std::int64_t last = std::min(blocks, first + kTile);
+    pixels.clear();
+    for (std::int64_t block = first; block < last; ++block) AppendBlock(camera, block, pixels);
+    ViewRays tile = RaysOfPixels(camera, normalized_from_camera, pixels, background);
+    const bool any = std::ranges::find(tile.valid, 1) != tile.valid.end();
+    LendRays(tile);
+    const RenderOutput out = any ? renderer.Render(tile.rays) : RenderOutput{};
+    for (std::size_t r = 0; r < pixels.size(); ++r) {
+      const std::int64_t pixel = pixels[r];
+      float* const rgb = &view.rgb.pixels[3 * pixel];
+      if (tile.valid[r]) {
+        std::copy_n(&out.rgb[3 * r], 3, rgb);
+        view.opacity.pixels[pixel] = out.opacity[r];
+        view.depth.pixels[pixel] = out.depth[r];
+      } else {
+        std::copy_n(background.data(), 3, rgb);
       }
     }
-    const RenderOutput out = renderer.Render(tile.rays);
-    std::copy(out.rgb.begin(), out.rgb.end(), view.rgb.pixels.begin() + 3 * first);
-    std::copy(out.opacity.begin(), out.opacity.end(), view.opacity.pixels.begin() + first);
-    std::copy(out.depth.begin(), out.depth.end(), view.depth.pixels.begin() + first);
-    for (std::int64_t r = 0; r < last - first; ++r) {
-      if (tile.valid[r]) continue;
-      for (int c = 0; c < 3; ++c) view.rgb.pixels[3 * (first + r) + c] = background[c];
-      view.opacity.pixels[first + r] = 0;
-      view.depth.pixels[first + r] = 0;
-    }
-    if (progress) progress(last);
+    if (progress) progress(std::min(all, all * last / blocks));
   }
   return view;
 }

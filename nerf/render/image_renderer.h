@@ -17,7 +17,8 @@ struct RenderedView {
 };
 
 // Renders every pixel of a camera, a tile of rays at a time, so that memory does not grow with the
-// size of the image beyond the image itself.
+// size of the image beyond the image itself. Rays go in blocks of 4 x 4 pixels, a block in squares
+// of 2 x 2: every 16 and every 4 rays of a batch, in order, are neighbours.
 //   progress  called with the number of pixels done, after each tile; throw from it to stop
 RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
                         const Eigen::Isometry3d& normalized_from_camera,

@@ -19,8 +19,8 @@ void TileProposal::Refresh() {
   density_.Refresh(std::vector<float>(proposal_->Hash().Layout().levels.size(), 1.0f));
 }
 
-void TileProposal::Propose(const RayBatch& rays, std::int64_t first, std::int64_t last,
-                           ProposalTile& tile, RaySamples& samples) const {
+void TileProposal::Cut(const RayBatch& rays, std::int64_t first, std::int64_t last,
+                       ProposalTile& tile) const {
   const std::int64_t count = last - first, coarse = options_.intervals, fine = options_.samples;
   tile.coarse_edges.resize(count * (coarse + 1));
   tile.edges.resize(count * (fine + 1));
@@ -44,15 +44,24 @@ void TileProposal::Propose(const RayBatch& rays, std::int64_t first, std::int64_
   kernels::WeightsForward<float>(tile.ray_begin, tile.density.sigma, tile.dt, tile.weights, 0,
                                  count);
 
+  const auto trust = static_cast<float>(proposal_->Trust());
+  for (std::int64_t k = 0; k < count; ++k) {
+    CutByWeights(coarse_edges(k), std::span(tile.weights).subspan(k * coarse, coarse), trust,
+                 static_cast<float>(options_.padding), rays.jitter[first + k],
+                 std::span(tile.edges).subspan(k * (fine + 1), fine + 1));
+  }
+}
+
+void TileProposal::Propose(const RayBatch& rays, std::int64_t first, std::int64_t last,
+                           ProposalTile& tile, RaySamples& samples) const {
+  Cut(rays, first, last, tile);
+  const std::int64_t count = last - first, fine = options_.samples;
   samples.position.resize(3 * count * fine);
   samples.t.resize(count * fine);
   samples.dt.resize(count * fine);
-  const auto trust = static_cast<float>(proposal_->Trust());
   for (std::int64_t k = 0; k < count; ++k) {
-    const auto edges = std::span(tile.edges).subspan(k * (fine + 1), fine + 1);
-    CutByWeights(coarse_edges(k), std::span(tile.weights).subspan(k * coarse, coarse), trust,
-                 static_cast<float>(options_.padding), rays.jitter[first + k], edges);
-    PackIntervalsOfRay(rays, first + k, edges,
+    PackIntervalsOfRay(rays, first + k,
+                       std::span(tile.edges).subspan(k * (fine + 1), fine + 1),
                        std::span(samples.position).subspan(3 * k * fine, 3 * fine),
                        std::span(samples.t).subspan(k * fine, fine),
                        std::span(samples.dt).subspan(k * fine, fine));

@@ -30,7 +30,10 @@ class TileProposal {
 
   void Refresh();
 
-  // Places the samples of rays [first, last): options.samples a ray.
+  // Cuts rays [first, last) into options.samples intervals each: tile.edges.
+  void Cut(const RayBatch& rays, std::int64_t first, std::int64_t last, ProposalTile& tile) const;
+
+  // The same, with the samples in the middle of the intervals.
   void Propose(const RayBatch& rays, std::int64_t first, std::int64_t last, ProposalTile& tile,
                RaySamples& samples) const;
 

@@ -120,5 +120,75 @@ TEST_F(LoadedDataset, HeldOutPhotographsAreNotRead) {
   EXPECT_TRUE(data.skipped.empty());
 }
 
+// 500 photographs of 12 million pixels, as a person may bring them.
+TEST(PlanData, HoldsNoMoreThanTheMemoryThatIsAllowed) {
+  sfm::PosedImages posed = Posed(500);
+  posed.cameras[0] = PinholeFromFov(4000, 3000, 1.0);
+  AssignSplits(posed, DataOptions());
+  DataOptions options;
+  const DataPlan plan = PlanData(posed, options);
+  EXPECT_EQ(plan.train + plan.validation + plan.held_out, 500);
+  EXPECT_EQ(plan.held_out, 63);
+  EXPECT_EQ(plan.pixels, 437 * std::int64_t{12'000'000});
+  EXPECT_LE(plan.Bytes(), std::int64_t{1} << 30);
+  EXPECT_GT(plan.Bytes(), (std::int64_t{1} << 30) - 1000);
+  EXPECT_LE(437 * plan.HeldOf(12'000'000), plan.held);
+  options.downscale = 40;  // 300 x 225
+  const DataPlan small = PlanData(posed, options);
+  EXPECT_EQ(small.held, small.pixels);
+  EXPECT_EQ(small.HeldOf(300 * 225), 300 * 225);
+}
+
+TEST(View, HeldPixelsAreSpreadEvenlyAndAtRandom) {
+  View view;
+  view.camera = PinholeFromFov(100, 50, 1.0);
+  view.rgba.resize(4 * 700);
+  int repeated = 0;
+  std::int64_t before = -1;
+  for (std::int64_t k = 0; k < view.Held(); ++k) {
+    const std::int64_t pixel = view.PixelOf(k);
+    EXPECT_GE(pixel, 5000 * k / 700);
+    EXPECT_LT(pixel, 5000 * (k + 1) / 700);
+    repeated += pixel - before == 7;
+    before = pixel;
+  }
+  EXPECT_LT(repeated, 200);  // no raster
+  View other = view;
+  other.seed = 1;
+  EXPECT_NE(other.PixelOf(0) + other.PixelOf(1) * 5000, view.PixelOf(0) + view.PixelOf(1) * 5000);
+  view.rgba.resize(4 * 5000);
+  EXPECT_EQ(view.PixelOf(123), 123);
+}
+
+TEST(LoadDataset, AShareOfThePixelsIsThoseOfThePhotograph) {
+  const test::ScratchFolder folder;
+  sfm::PosedImages posed = Posed(2);
+  posed.cameras[0] = PinholeFromFov(500, 400, 1.0);
+  for (sfm::PosedImage& image : posed.images) {
+    image.split = Split::kTrain;
+    image.path = folder.path() / image.name;
+    Image photo(500, 400, 3);
+    for (int p = 0; p < 500 * 400; ++p) {
+      photo.pixels[3 * p] = static_cast<float>(p % 500 % 256) / 255;
+      photo.pixels[3 * p + 1] = static_cast<float>(p / 500 % 256) / 255;
+    }
+    WriteImage(image.path, photo);
+  }
+  DataOptions options;
+  options.memory_mb = 1;  // of 3.05
+  const Dataset data = LoadDataset(posed, options, {});
+  std::int64_t held = 0;
+  for (const View& view : data.train) {
+    held += view.Held();
+    for (std::int64_t k = 0; k < view.Held(); k += 97) {
+      const std::int64_t pixel = view.PixelOf(k);
+      EXPECT_NEAR(static_cast<float>(view.rgba[4 * k]), pixel % 500 % 256 / 255.0, 1e-3);
+      EXPECT_NEAR(static_cast<float>(view.rgba[4 * k + 1]), pixel / 500 % 256 / 255.0, 1e-3);
+    }
+  }
+  EXPECT_LE(held * 8, 1 << 20);
+  EXPECT_GT(held * 8, (1 << 20) - 32);
+}
+
 }  // namespace
 }  // namespace nerf

@@ -72,8 +72,9 @@ TEST(PixelSampler, TransparentPixelsShowTheRaysBackground) {
 
 TEST(RaysOfPixels, LookThroughPixelCentresInRowOrder) {
   const View view = Views()[0];
+  const std::vector<std::int64_t> pixels = {5, 6};
   const ViewRays rays =
-      RaysOfPixels(view.camera, view.normalized_from_camera, 5, 7, Eigen::Vector3f::Ones());
+      RaysOfPixels(view.camera, view.normalized_from_camera, pixels, Eigen::Vector3f::Ones());
   const auto d = DirectionFromPixel(view.camera, {1.5, 1.5});
   ASSERT_EQ(rays.rays.Size(), 2);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(rays.rays.direction[c], (*d)[c], 1e-6);

@@ -3,133 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <map>
-#include <string>
-
-#include "nerf/field/proposal_field.h"
-#include "nerf/field/radiance_field.h"
 #include "nerf/parallel.h"
-#include "nerf/sampling/occupancy_grid.h"
-#include "nerf/train/libtorch_engine.h"
 #include "nerf/train/non_finite_error.h"
 #include "tests/support/simd_levels.h"
+#include "tests/support/two_engines.h"
 
 namespace nerf {
 namespace {
 
-// One field, and both engines on it.
-struct TwoEngines {
-  kernels::HashGridOptions encoding;
-  FieldOptions field_options;
-  ColorEncoding color = ColorEncoding::kSrgb;
-  std::shared_ptr<ProposalField> proposal;
-  ProposalOptions proposal_options;
-  MarchOptions march;
-  LossOptions loss;
-  GradientScalingOptions gradient_scaling;
-
-  std::shared_ptr<RadianceField> field;
-  std::shared_ptr<OccupancyGrid> grid;
-  std::unique_ptr<Engine> libtorch, fused;
-  TargetBatch batch;
-
-  TwoEngines() {
-    encoding.levels = 5;
-    encoding.log2_table_size = 10;
-    encoding.base_resolution = 4;
-    encoding.max_resolution = 40;
-    field_options.hidden_width = 24;
-    field_options.geometry_features = 7;
-    march.steps_per_unit = 24;
-    march.stop_transmittance = 1e-3;
-  }
-
-  void Make(int rays, bool with_proposal = false) {
-    field = std::make_shared<RadianceField>(encoding, field_options, color, 5);
-    {
-      // Large enough a table for rays that end early, for colours and densities of all kinds.
-      const torch::NoGradGuard no_grad;
-      torch::manual_seed(1);
-      for (auto& p : field->named_parameters()) {
-        if (p.key().ends_with("table")) p.value().normal_(0.0, 0.7);
-      }
-    }
-    if (with_proposal) {
-      proposal_options.intervals = 20;
-      proposal_options.samples = 12;
-      proposal_options.distortion = 0.05;
-      proposal_options.encoding.log2_table_size = 10;
-      proposal = std::make_shared<ProposalField>(proposal_options, 9);
-      const torch::NoGradGuard no_grad;
-      for (auto& p : proposal->named_parameters()) {
-        if (p.key().ends_with("table")) p.value().normal_(0.0, 0.7);
-      }
-    }
-    OccupancyOptions occupancy;
-    occupancy.resolution = 16;
-    grid = std::make_shared<OccupancyGrid>(occupancy, march.StepLength());
-    const EngineParts parts = {field,           grid, proposal, march, proposal_options, loss,
-                               gradient_scaling};
-    libtorch = std::make_unique<LibTorchEngine>(parts);
-    fused = std::make_unique<FusedEngine>(parts);
-    batch.rays.Resize(rays);
-    batch.rgb.resize(3 * rays);
-    for (int r = 0; r < rays; ++r) {
-      const Eigen::Vector3f d =
-          Eigen::Vector3f(std::sin(r), std::cos(1.7f * r), std::sin(0.3f * r)).normalized();
-      for (int c = 0; c < 3; ++c) {
-        batch.rays.origin[3 * r + c] = -1.5f * d[c] + 0.1f * std::sin(static_cast<float>(r + c));
-        batch.rays.direction[3 * r + c] = d[c];
-        batch.rays.background[3 * r + c] = 0.5f + 0.5f * std::sin(static_cast<float>(3 * r + c));
-        batch.rgb[3 * r + c] = 0.5f + 0.4f * std::cos(static_cast<float>(r + 2 * c));
-      }
-      batch.rays.jitter[r] = 0.5f + 0.49f * std::sin(static_cast<float>(5 * r));
-    }
-  }
-
-  std::map<std::string, torch::Tensor> Gradients() {
-    std::map<std::string, torch::Tensor> gradients;
-    const auto take = [&](torch::nn::Module& module, const std::string& prefix) {
-      for (auto& p : module.named_parameters()) {
-        gradients[prefix + p.key()] = p.value().grad().clone();
-        p.value().mutable_grad() = torch::Tensor();
-      }
-    };
-    take(*field, "");
-    if (proposal) take(*proposal, "proposal.");
-    return gradients;
-  }
-
-  // tolerance: of the gradients, as a part of their largest value. Rounding alone asks for 1e-4;
-  // where samples stand a rounding apart, a neuron's sign may differ for one of them.
-  void ExpectTheSame(double tolerance = 1e-4) {
-    const RenderOutput a = libtorch->Render(batch.rays), b = fused->Render(batch.rays);
-    ASSERT_EQ(a.rgb.size(), b.rgb.size());
-    for (std::size_t i = 0; i < a.rgb.size(); ++i) {
-      EXPECT_NEAR(a.rgb[i], b.rgb[i], 1e-5 * (1 + std::fabs(a.rgb[i])));
-    }
-    for (std::size_t r = 0; r < a.opacity.size(); ++r) {
-      EXPECT_NEAR(a.opacity[r], b.opacity[r], 1e-5);
-      EXPECT_NEAR(a.depth[r], b.depth[r], 1e-4 * (1 + a.depth[r]));
-    }
-    const StepResult step_a = libtorch->AccumulateGradients(batch);
-    const auto gradients_a = Gradients();
-    const StepResult step_b = fused->AccumulateGradients(batch);
-    const auto gradients_b = Gradients();
-    EXPECT_NEAR(step_a.loss, step_b.loss, 1e-5 * step_a.loss);
-    EXPECT_NEAR(step_a.squared_error, step_b.squared_error, 1e-5 * step_a.squared_error);
-    EXPECT_EQ(step_a.marched, step_b.marched);
-    EXPECT_EQ(step_a.shaded, step_b.shaded);
-    EXPECT_GT(step_a.shaded, 0);
-    for (const auto& [name, gradient] : gradients_a) {
-      const double size = gradient.abs().max().item<double>();
-      EXPECT_GT(size, 0) << name;
-      const double error = (gradient - gradients_b.at(name)).abs().max().item<double>();
-      EXPECT_LE(error, tolerance * size) << name;
-    }
-  }
-};
+using test::TwoEngines;
 
 class FusedEngineAtEveryLevel : public test::EverySimdLevel {};
 

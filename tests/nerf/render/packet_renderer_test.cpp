@@ -1,0 +1,211 @@
+#include "nerf/render/packet_renderer.h"
+
+#include <gmock/gmock.h>
+
+#include "nerf/render/image_renderer.h"
+#include "sfm/input_error.h"
+#include "tests/support/simd_levels.h"
+#include "tests/support/two_engines.h"
+
+namespace nerf {
+namespace {
+
+using test::TwoEngines;
+
+RenderOutput RenderWith(const TwoEngines& e, const RenderQuality& quality) {
+  return PacketRenderer(e.field, e.grid, e.proposal, e.march, e.proposal_options, quality)
+      .Render(e.batch.rays);
+}
+
+RenderQuality Exact(const TwoEngines& e) {
+  return RenderQuality::Of(1, e.march, e.proposal_options);
+}
+
+class PacketRendererAtEveryLevel : public test::EverySimdLevel {};
+
+TEST_P(PacketRendererAtEveryLevel, IsTheEngineWhereNothingIsLeftOut) {
+  for (const bool with_proposal : {false, true}) {
+    TwoEngines e;
+    e.march.stop_transmittance = 1e-6;
+    e.Make(300, with_proposal);
+    SCOPED_TRACE(with_proposal);
+    const RenderOutput expected = e.fused->Render(e.batch.rays), out = RenderWith(e, Exact(e));
+    for (std::size_t i = 0; i < expected.rgb.size(); ++i) {
+      EXPECT_NEAR(out.rgb[i], expected.rgb[i], 1e-5);
+    }
+    for (std::size_t r = 0; r < expected.opacity.size(); ++r) {
+      EXPECT_NEAR(out.opacity[r], expected.opacity[r], 1e-5);
+      EXPECT_NEAR(out.depth[r], expected.depth[r], 1e-4 * (1 + expected.depth[r]));
+    }
+    EXPECT_GT(out.samples, 0);
+    EXPECT_LE(out.samples, expected.samples);
+  }
+}
+
+NERF_FOR_EVERY_SIMD_LEVEL(PacketRendererAtEveryLevel);
+
+TEST(PacketRenderer, StoppingEarlyChangesNoPixelByMoreThanItsBound) {
+  TwoEngines e;
+  e.march.stop_transmittance = 1e-6;
+  e.Make(300);
+  const RenderOutput exact = RenderWith(e, Exact(e));
+  RenderQuality quality = Exact(e);
+  quality.stop_transmittance = 0.2;
+  const RenderOutput out = RenderWith(e, quality);
+  EXPECT_LT(out.samples, exact.samples);
+  double largest = 0;
+  for (std::size_t i = 0; i < exact.rgb.size(); ++i) {
+    largest = std::max(largest, std::fabs(static_cast<double>(out.rgb[i] - exact.rgb[i])));
+  }
+  EXPECT_LE(largest, quality.stop_transmittance);
+  EXPECT_GT(largest, 1e-4);  // it did leave something out
+}
+
+// However thin the samples, their colour is not lost, only taken from fewer of them.
+TEST(PacketRenderer, ThinFogKeepsItsColourAndOpacity) {
+  TwoEngines e;
+  e.Make(40);
+  const torch::NoGradGuard no_grad;
+  for (auto& p : e.field->named_parameters()) {
+    if (p.key().find("color") != std::string::npos) p.value().zero_();  // grey: sigmoid(0)
+    if (p.key().ends_with("table")) p.value().fill_(0.01);              // fog
+  }
+  RenderQuality quality = Exact(e);
+  const RenderOutput exact = RenderWith(e, quality);
+  quality.min_weight = 0.02;  // many times the weight of a sample
+  const RenderOutput out = RenderWith(e, quality);
+  EXPECT_EQ(out.opacity, exact.opacity);
+  EXPECT_EQ(out.depth, exact.depth);
+  for (std::size_t i = 0; i < exact.rgb.size(); ++i) {
+    ASSERT_GT(exact.opacity[i / 3], quality.min_weight);
+    ASSERT_LT(exact.opacity[i / 3], 0.99);
+    EXPECT_NEAR(out.rgb[i], exact.rgb[i], 1e-6);
+  }
+}
+
+TEST(PacketRenderer, WeightThatNoSampleCarriesIsLessThanItsBound) {
+  TwoEngines e;
+  e.Make(40);
+  RenderQuality quality = Exact(e);
+  const RenderOutput exact = RenderWith(e, quality);
+  quality.min_weight = 1;  // no sample reaches it: rays see the background alone
+  const RenderOutput out = RenderWith(e, quality);
+  EXPECT_EQ(out.rgb, e.batch.rays.background);
+  EXPECT_EQ(out.opacity, exact.opacity);
+}
+
+TEST(PacketRenderer, NeighboursThatAreTheSameRayLoseNothingByAPacket) {
+  TwoEngines e;
+  e.Make(64, /*with_proposal=*/true);
+  RayBatch& rays = e.batch.rays;
+  for (std::int64_t r = 0; r < 64; ++r) {
+    const std::int64_t from = r / 16 * 16;
+    rays.jitter[r] = rays.jitter[from];
+    for (int c = 0; c < 3; ++c) {
+      rays.origin[3 * r + c] = rays.origin[3 * from + c];
+      rays.direction[3 * r + c] = rays.direction[3 * from + c];
+    }
+  }
+  RenderQuality quality = Exact(e);
+  const RenderOutput alone = RenderWith(e, quality);
+  for (const int packet : {4, 16}) {
+    quality.packet = packet;
+    const RenderOutput together = RenderWith(e, quality);
+    for (std::size_t i = 0; i < alone.rgb.size(); ++i) {
+      EXPECT_NEAR(together.rgb[i], alone.rgb[i], 2e-3);
+    }
+  }
+}
+
+TEST(PacketRenderer, ABatchNeedNotBeWholePackets) {
+  TwoEngines e;
+  e.Make(21, /*with_proposal=*/true);
+  RenderQuality quality = Exact(e);
+  quality.packet = 16;
+  quality.samples = 5;
+  for (const float value : RenderWith(e, quality).rgb) EXPECT_TRUE(std::isfinite(value));
+}
+
+TEST(PacketRenderer, ShowsANonFiniteFieldAsItIs) {
+  TwoEngines e;
+  e.Make(8);
+  const torch::NoGradGuard no_grad;
+  for (auto& p : e.field->named_parameters()) p.value().fill_(std::nanf(""));
+  RenderQuality quality = RenderQuality::Of(0.3, e.march, e.proposal_options);
+  for (const float value : RenderWith(e, quality).rgb) EXPECT_TRUE(std::isnan(value));
+}
+
+TEST(RenderQuality, TheDialGoesFromFastToExact) {
+  const MarchOptions march;
+  const ProposalOptions proposal;
+  RenderQuality before = RenderQuality::Of(0, march, proposal);
+  EXPECT_EQ(before.packet, 16);
+  for (const double dial : {0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) {
+    const RenderQuality q = RenderQuality::Of(dial, march, proposal);
+    EXPECT_LE(q.packet, before.packet);
+    EXPECT_GE(q.samples, before.samples);
+    EXPECT_LT(q.min_weight, before.min_weight);
+    EXPECT_LT(q.stop_transmittance, before.stop_transmittance);
+    before = q;
+  }
+  EXPECT_EQ(before.packet, 1);
+  EXPECT_EQ(before.samples, proposal.samples);
+  EXPECT_EQ(before.min_weight, 0);
+  EXPECT_EQ(before.stop_transmittance, march.stop_transmittance);
+  EXPECT_THROW(RenderQuality::Of(1.1, march, proposal), sfm::InputError);
+  EXPECT_THROW(RenderQuality::Of(std::nan(""), march, proposal), sfm::InputError);
+}
+
+// Shows each ray's direction as its colour, and keeps the order in which rays came.
+class DirectionRenderer : public RayRenderer {
+ public:
+  RenderOutput Render(const RayBatch& rays) override {
+    RenderOutput out;
+    out.rgb = rays.direction;
+    out.opacity.assign(rays.Size(), 1);
+    out.depth.assign(rays.Size(), 1);
+    directions.insert(directions.end(), rays.direction.begin(), rays.direction.end());
+    return out;
+  }
+  std::vector<float> directions;
+};
+
+TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {
+  for (const auto& [width, height] : {std::pair{4, 4}, {7, 5}, {1, 1}, {70, 41}}) {
+    sfm::Camera camera;
+    camera.width = width;
+    camera.height = height;
+    camera.params = {100, 100, width / 2.0, height / 2.0, 0, 0, 0, 0};
+    camera.model = sfm::CameraModel::kOpenCv;
+    DirectionRenderer renderer;
+    std::int64_t done = 0;
+    const RenderedView view =
+        RenderView(renderer, camera, Eigen::Isometry3d::Identity(), Eigen::Vector3f::Zero(),
+                   ColorEncoding::kLinear, [&](std::int64_t pixels) {
+                     EXPECT_GE(pixels, done);
+                     done = pixels;
+                   });
+    EXPECT_EQ(done, width * height);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const Eigen::Vector3d d =
+            Eigen::Vector3d((x + 0.5 - width / 2.0) / 100, (y + 0.5 - height / 2.0) / 100, 1)
+                .normalized();
+        for (int c = 0; c < 3; ++c) {
+          EXPECT_NEAR(view.rgb.pixels[3 * (y * width + x) + c], d[c], 1e-6) << x << "," << y;
+        }
+      }
+    }
+    ASSERT_EQ(renderer.directions.size() % 48, 0u);
+    for (std::size_t r = 0; r < renderer.directions.size() / 3; ++r) {
+      for (const std::size_t packet : {4, 16}) {
+        const std::size_t first = r / packet * packet;
+        const float across = renderer.directions[3 * r] - renderer.directions[3 * first];
+        EXPECT_LE(std::fabs(across), 0.0101 * (packet == 4 ? 1 : 3));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace nerf
