@@ -174,8 +174,9 @@ void AddEvalCommand(CLI::App& app) {
   command->add_option("--split", arguments->split, "which images: test, validation, train")
       ->check(CLI::IsMember({"test", "validation", "train"}))
       ->capture_default_str();
-  command->add_option("--quality", arguments->quality,
-                      "from 0, fast, to 1, all that training computes")
+  command
+      ->add_option("--quality", arguments->quality,
+                   "from 0, fast, to 1, all that training computes")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");

@@ -222,8 +222,9 @@ void AddRenderCommand(CLI::App& app) {
                     "also depth along the ray: EXR in the input's units, and a picture");
   command->add_flag("--opacity", arguments->opacity, "also opacity, as PNG");
   command->add_flag("--no-video", arguments->no_video, "make no MP4 of a path");
-  command->add_option("--quality", arguments->quality,
-                      "from 0, fast, to 1, all that training computes")
+  command
+      ->add_option("--quality", arguments->quality,
+                   "from 0, fast, to 1, all that training computes")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(

@@ -72,7 +72,8 @@ void DataOptions::Check() const {
   if (validation_images < 0) {
     throw sfm::InputError("config: data.validation_images is {}; use 0 or more", validation_images);
   }
-  if (memory_mb < 1) throw sfm::InputError("config: data.memory_mb is {}; use 1 or more", memory_mb);
+  if (memory_mb < 1)
+    throw sfm::InputError("config: data.memory_mb is {}; use 1 or more", memory_mb);
 }
 
 std::int64_t DataPlan::Bytes() const { return held * kBytesPerPixel; }

@@ -86,8 +86,7 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
 }
 
 ViewRays RaysOfPixels(const sfm::Camera& camera, const Eigen::Isometry3d& normalized_from_camera,
-                      std::span<const std::int64_t> pixels,
-                      const Eigen::Vector3f& background) {
+                      std::span<const std::int64_t> pixels, const Eigen::Vector3f& background) {
   ViewRays out;
   const auto count = static_cast<std::int64_t>(pixels.size());
   out.rays.Resize(count);

@@ -39,7 +39,6 @@ struct ViewRays {
   std::vector<std::uint8_t> valid;  // [R]
 };
 ViewRays RaysOfPixels(const sfm::Camera& camera, const Eigen::Isometry3d& normalized_from_camera,
-                      std::span<const std::int64_t> pixels,
-                      const Eigen::Vector3f& background);
+                      std::span<const std::int64_t> pixels, const Eigen::Vector3f& background);
 
 }  // namespace nerf

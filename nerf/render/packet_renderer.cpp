@@ -56,8 +56,8 @@ PacketRenderer::PacketRenderer(std::shared_ptr<RadianceField> field,
                                ProposalOptions proposal_options, const RenderQuality& quality)
     : field_(std::move(field)), grid_(std::move(grid)), march_(march), quality_(quality) {
   if (proposal) {
-    proposal_.emplace(std::move(proposal), WithSamples(std::move(proposal_options), quality.samples),
-                      march);
+    proposal_.emplace(std::move(proposal),
+                      WithSamples(std::move(proposal_options), quality.samples), march);
   }
 }
 
@@ -98,8 +98,12 @@ void PacketRenderer::PlaceSamples(const RayBatch& rays, std::int64_t first, std:
     }
     return;
   }
-  MiddleRays(rays, first, last, quality_.packet, tile.packets);
-  proposal_->Cut(tile.packets, 0, tile.packets.Size(), tile.proposal);
+  if (quality_.packet == 1) {
+    proposal_->Cut(rays, first, last, tile.proposal);
+  } else {
+    MiddleRays(rays, first, last, quality_.packet, tile.packets);
+    proposal_->Cut(tile.packets, 0, tile.packets.Size(), tile.proposal);
+  }
   const std::int64_t each = quality_.samples;
   s.position.resize(3 * count * each);
   s.t.resize(count * each);

@@ -60,8 +60,7 @@ void TileProposal::Propose(const RayBatch& rays, std::int64_t first, std::int64_
   samples.t.resize(count * fine);
   samples.dt.resize(count * fine);
   for (std::int64_t k = 0; k < count; ++k) {
-    PackIntervalsOfRay(rays, first + k,
-                       std::span(tile.edges).subspan(k * (fine + 1), fine + 1),
+    PackIntervalsOfRay(rays, first + k, std::span(tile.edges).subspan(k * (fine + 1), fine + 1),
                        std::span(samples.position).subspan(3 * k * fine, 3 * fine),
                        std::span(samples.t).subspan(k * fine, fine),
                        std::span(samples.dt).subspan(k * fine, fine));

@@ -32,8 +32,8 @@ RenderQuality RenderQuality::Of(double dial, const MarchOptions& march,
   const double samples = Between(1, kFewestSamples, dial) * proposal.samples;
   quality.samples = std::max(1, static_cast<int>(std::lround(samples)));
   quality.min_weight = Between(kSmallest, kMinWeight, dial);
-  quality.stop_transmittance = std::max(
-      march.stop_transmittance, Between(kSmallest, kStopTransmittance, dial));
+  quality.stop_transmittance =
+      std::max(march.stop_transmittance, Between(kSmallest, kStopTransmittance, dial));
   return quality;
 }
 

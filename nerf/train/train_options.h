@@ -44,7 +44,7 @@ double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, st
 struct TrainOptions {
   std::string engine = "fused";  // or "libtorch", the definition that it is tested against
   std::int64_t steps = 5000;
-  std::int64_t samples_per_batch = 32768;    // samples with gradients that a step aims at
+  std::int64_t samples_per_batch = 32768;  // samples with gradients that a step aims at
   std::int64_t max_rays_per_batch = 8192;
   std::uint64_t seed = 1;
   std::int64_t checkpoint_every = 500;  // steps

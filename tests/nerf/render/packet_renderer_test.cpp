@@ -176,7 +176,7 @@ TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {
     camera.width = width;
     camera.height = height;
     camera.params = {100, 100, width / 2.0, height / 2.0, 0, 0, 0, 0};
-    camera.model = sfm::CameraModel::kOpenCv;
+    camera.model = sfm::CameraModel::kOpenCV;
     DirectionRenderer renderer;
     std::int64_t done = 0;
     const RenderedView view =
