@@ -176,7 +176,7 @@ void AddEvalCommand(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--quality", arguments->quality,
-                   "from 0, fast, to 1, all that training computes")
+                   "0, fast, to 1, exact; what each costs stands in the README")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");

@@ -224,7 +224,7 @@ void AddRenderCommand(CLI::App& app) {
   command->add_flag("--no-video", arguments->no_video, "make no MP4 of a path");
   command
       ->add_option("--quality", arguments->quality,
-                   "from 0, fast, to 1, all that training computes")
+                   "0, fast, to 1, exact; what each costs stands in the README")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(

@@ -24,8 +24,10 @@ ProposalOptions WithSamples(ProposalOptions options, int samples) {
 struct RayState {
   std::int64_t next = 0, end = 0;  // samples ahead
   double optical_depth = 0;
-  float carried = 0;  // weight that waits for a sample with a colour
-  float shaded = 0;   // weight that has one
+  float met = 0;     // weight so far
+  float shaded = 0;  // weight that has a colour
+  float heaviest_weight = 0;
+  std::int64_t heaviest = 0;  // sample
   float weighted_t = 0;
   float rgb[3] = {0, 0, 0};
 
@@ -154,6 +156,8 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
   tile.kept.clear();
   tile.kept_ray.clear();
   tile.kept_weight.clear();
+  const auto share = static_cast<float>(quality_.color_share);
+  const auto shares_met = [share](float weight) { return std::floor(weight / share + 0.5f); };
   for (std::size_t i = 0; i < tile.sample.size(); ++i) {
     RayState& ray = tile.rays[tile.ray[i]];
     const float dt = s.dt[tile.sample[i]];
@@ -162,19 +166,44 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
     const auto weight = static_cast<float>(ray.Transmittance() * -std::expm1(-x));
     ray.optical_depth += x;
     ray.weighted_t += weight * s.t[tile.sample[i]];
-    ray.carried += weight;
-    if (!(ray.carried <= static_cast<float>(quality_.min_weight))) {
-      tile.kept.push_back(static_cast<std::int64_t>(i));
-      tile.kept_ray.push_back(tile.ray[i]);
-      tile.kept_weight.push_back(ray.carried);
-      ray.carried = 0;
+    const float before = ray.met;
+    ray.met += weight;
+    if (weight > ray.heaviest_weight) {
+      ray.heaviest_weight = weight;
+      ray.heaviest = tile.sample[i];
     }
+    const float counts =
+        quality_.color_share > 0 ? share * (shares_met(ray.met) - shares_met(before)) : weight;
+    if (counts == 0) continue;  // NaN goes on, to be seen
+    tile.kept.push_back(static_cast<std::int64_t>(i));
+    tile.kept_ray.push_back(tile.ray[i]);
+    tile.kept_weight.push_back(counts);
   }
   Shade(rays, first, tile);
   std::erase_if(tile.alive, [&](std::int64_t k) {
     const RayState& ray = tile.rays[k];
     return ray.next == ray.end || ray.Transmittance() < quality_.stop_transmittance;
   });
+}
+
+// Rays that met less than half a share, through thin fog, take the colour of their heaviest sample.
+void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const {
+  tile.position.clear();
+  tile.kept.clear();
+  tile.kept_ray.clear();
+  for (std::size_t k = 0; k < tile.rays.size(); ++k) {
+    const RayState& ray = tile.rays[k];
+    if (!(ray.shaded == 0 && ray.met > 0)) continue;
+    const auto position = tile.samples.position.begin() + 3 * ray.heaviest;
+    tile.position.insert(tile.position.end(), position, position + 3);
+    tile.kept.push_back(static_cast<std::int64_t>(tile.kept.size()));
+    tile.kept_ray.push_back(static_cast<std::int64_t>(k));
+  }
+  if (tile.kept.empty()) return;
+  tile.kept_weight.assign(tile.kept.size(), 1.0f);
+  field_.Density().Density(tile.position, tile.field.density);
+  tile.evaluated += static_cast<std::int64_t>(tile.kept.size());
+  Shade(rays, first, tile);
 }
 
 RenderOutput PacketRenderer::Render(const RayBatch& rays) {
@@ -198,12 +227,13 @@ RenderOutput PacketRenderer::Render(const RayBatch& rays) {
       if (tile.rays[k].next < tile.rays[k].end) tile.alive.push_back(k);
     }
     while (!tile.alive.empty()) Advance(rays, first, tile);
+    ShadeFaint(rays, first, tile);
 
     for (std::int64_t k = 0; k < last - first; ++k) {
       const RayState& ray = tile.rays[k];
       const std::int64_t r = first + k;
-      // The little light that is left where a ray is given up, and the weight that still waits,
-      // take on the colour of what is in front of them.
+      // What light is left where a ray is given up, and weight without a colour, take on the colour
+      // of the rest.
       const bool given_up = ray.next < ray.end;
       const float opacity = given_up ? 1 : static_cast<float>(-std::expm1(-ray.optical_depth));
       const float scale = ray.shaded > 0 ? opacity / ray.shaded : 0.0f;

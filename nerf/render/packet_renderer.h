@@ -32,6 +32,7 @@ class PacketRenderer : public RayRenderer {
   void PlaceSamples(const RayBatch& rays, std::int64_t first, std::int64_t last, Tile& tile) const;
   void Shade(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const;
+  void ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const;
 
   TileField field_;
   std::shared_ptr<OccupancyGrid> grid_;

@@ -8,16 +8,13 @@
 namespace nerf {
 namespace {
 
-// The fast end.
-constexpr double kFewestSamples = 1.0 / 3;  // of those that were trained
-constexpr double kMinWeight = 0.02;
-constexpr double kStopTransmittance = 0.02;
-constexpr double kSmallest = 1e-4;  // share of a pixel that counts as nothing
+// The fast end, where the validation view of the fox has lost 1.2 of 32.0 dB.
+constexpr double kFewestSamples = 0.42;  // of those that were trained
+constexpr double kLargestColorShare = 0.25;
+constexpr double kLargestTransmittance = 0.05;
 
-// From `exact` to `fast` by equal ratios.
-double Between(double exact, double fast, double dial) {
-  return exact * std::pow(fast / exact, 1 - dial);
-}
+// Packets of 16 cost 0.05 dB there, and save most of what a proposal takes.
+constexpr int kPacket = 16;
 
 }  // namespace
 
@@ -26,15 +23,12 @@ RenderQuality RenderQuality::Of(double dial, const MarchOptions& march,
   if (!(dial >= 0 && dial <= 1)) {
     throw sfm::InputError("--quality {}: use 0 (fast) to 1 (exact)", dial);
   }
-  if (dial == 1) return {1, proposal.samples, 0, march.stop_transmittance};
-  RenderQuality quality;
-  quality.packet = dial < 0.4 ? 16 : dial < 0.8 ? 4 : 1;
-  const double samples = Between(1, kFewestSamples, dial) * proposal.samples;
-  quality.samples = std::max(1, static_cast<int>(std::lround(samples)));
-  quality.min_weight = Between(kSmallest, kMinWeight, dial);
-  quality.stop_transmittance =
-      std::max(march.stop_transmittance, Between(kSmallest, kStopTransmittance, dial));
-  return quality;
+  const double exact = march.stop_transmittance;
+  if (dial == 1) return {1, proposal.samples, 0, exact};
+  const double fast = std::max(exact, kLargestTransmittance);
+  const double samples = proposal.samples * (kFewestSamples + dial * (1 - kFewestSamples));
+  return {kPacket, std::max(1, static_cast<int>(std::lround(samples))),
+          kLargestColorShare * (1 - dial), fast * std::pow(exact / fast, dial)};
 }
 
 }  // namespace nerf

@@ -5,12 +5,13 @@
 
 namespace nerf {
 
-// What a rendering leaves out. Each bound is on its own share of a pixel, in units of the largest
-// radiance; the defaults leave nothing out that training does not.
+// What a rendering leaves out.
 struct RenderQuality {
   int packet = 1;    // pixels, side by side, whose samples a proposal places together: 1, 4, 16
   int samples = 24;  // a ray, where a proposal places them
-  double min_weight = 0;             // samples of less weight take on the colour of the next
+  // Weight that one colour stands for: along a ray only the samples in the middle of each such
+  // share of its weight get a colour. 0: each gets its own.
+  double color_share = 0;
   double stop_transmittance = 1e-4;  // a ray ends where less light than this gets through
 
   // The dial: 1 is exact, 0 the fastest whose pictures still look right.
