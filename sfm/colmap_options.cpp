@@ -6,8 +6,10 @@
 namespace sfm {
 
 void ColmapOptions::Check() const {
-  if (matcher != "auto" && matcher != "exhaustive" && matcher != "sequential") {
-    throw InputError("matcher: '{}' is unknown; it is auto, exhaustive or sequential", matcher);
+  if (matcher != "auto" && matcher != "exhaustive" && matcher != "sequential" &&
+      matcher != "guided") {
+    throw InputError("matcher: '{}' is unknown; it is auto, exhaustive, sequential or guided",
+                     matcher);
   }
   if (!CameraModelFromName(camera_model)) {
     throw InputError(

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <regex>
 
@@ -15,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSequenceMin = 100;     // "auto": fewer than this are matched exhaustively
-constexpr int kSequenceOverlap = 20;  // neighbours
+constexpr int kSequenceMin = 100;    // "auto": more than this, numbered, are matched in sequence
+constexpr int kExhaustiveMost = 20;  // and no more than this all with all
 constexpr int kFewestRegistered = 4;
 constexpr double kFewestFraction = 0.1;
 constexpr double kWarnFraction = 0.9;
@@ -72,15 +73,27 @@ PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& worksp
   std::vector<std::string> names;
   for (const Photo& photo : folder.photos) names.push_back(photo.name);
   const bool one_size = plan.front().name.find('/') == std::string::npos;
-  const bool sequential =
-      options.matcher == "sequential" || (options.matcher == "auto" && one_size &&
-                                          r.photos > kSequenceMin && IsNumberedSequence(names));
+  std::string matcher = options.matcher;
+  if (matcher == "auto") {
+    const bool sequence = one_size && r.photos > kSequenceMin && IsNumberedSequence(names);
+    matcher = sequence ? "sequential" : r.photos <= kExhaustiveMost ? "exhaustive" : "guided";
+  }
+  // COLMAP's lists of pairs know no names with spaces.
+  const auto has_space = [](const ColmapImage& image) {
+    return std::ranges::any_of(image.name, [](unsigned char c) { return std::isspace(c) != 0; });
+  };
+  if (matcher == "guided" && std::ranges::any_of(plan, has_space)) matcher = "exhaustive";
 
   ColmapSteps steps(workspace, options, r.photos);
   steps.PrepareImages(files, folder.photos, plan);
   steps.ExtractFeatures();
-  steps.Match(sequential);
+  steps.Match(matcher);
   steps.Map();
+  if (matcher == "guided" && steps.Registered() < kWarnFraction * r.photos) {
+    spdlog::info("{} of {} registered; the pairs that were left out are compared, too",
+                 steps.Registered(), r.photos);
+    steps.MatchAllAndMap();
+  }
   if (2 * steps.Registered() < r.photos) {
     spdlog::info("{} of {} registered; the mapper tries again with lower thresholds",
                  steps.Registered(), r.photos);
@@ -91,7 +104,7 @@ PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& worksp
   if (r.registered < kFewestRegistered || r.registered < kFewestFraction * r.photos) {
     throw InputError("{}: COLMAP registered {} of {} photographs, too few to go on: {}{}; see {}",
                      photo_folder.string(), r.registered, r.photos, kAdvice,
-                     sequential ? "; or try --matcher exhaustive" : "",
+                     matcher == "sequential" ? "; or try --matcher exhaustive" : "",
                      steps.LogFile("mapper").string());
   }
 

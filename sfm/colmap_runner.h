@@ -22,8 +22,9 @@ struct ColmapReport {
 };
 
 // From a folder of photographs to their poses, with the COLMAP program that is installed, on the
-// CPU: features, matches, incremental mapping; the mapper a second time with lower thresholds where
-// the first registered less than half. Of all models, the one with most registered images counts.
+// CPU: features, matches, incremental mapping; once more with all pairs where a guided match left
+// one in ten photographs unregistered, and with lower thresholds where half of them. Of all models,
+// the one with most registered images counts.
 //
 // All files go below `workspace`: images/ (what COLMAP sees), database.db, sparse/, log/ and
 // steps.json, by which a second call skips what is finished and goes on with an interrupted match.

@@ -33,10 +33,14 @@ class ColmapSteps {
   // database.db: cameras (one a folder of images/) and SIFT features.
   void ExtractFeatures();
   // database.db: verified matches. An interrupted match goes on with the pairs that are left.
-  void Match(bool sequential);
+  //   matcher  "exhaustive", "sequential" or "guided"
+  void Match(const std::string& matcher);
   // sparse/0, sparse/1, ...: a model for each part that could not be joined to the others.
   void Map();
-  // The mapper once more, with lower thresholds; its models are added to those of Map, numbered on.
+  // Both add their models to those of Map, numbered on.
+  // The pairs that a guided match left out, and the mapper once more.
+  void MatchAllAndMap();
+  // The mapper once more, with lower thresholds.
   void MapRelaxed();
 
   // Of the model with most registered photographs; 0 and an error where there is no model.
@@ -68,6 +72,12 @@ class ColmapSteps {
                              const Arguments& arguments) const;
   void RunOrThrow(const std::string& step, const std::string& command,
                   const Arguments& arguments) const;
+  int FirstOctave() const;
+  Arguments MatchingArguments(const std::string& command, const std::filesystem::path& database);
+  void MatchExhaustively(const std::string& step);
+  void MatchSequentially();
+  void MatchGuided();
+  void MapAgain(const std::string& step, const Arguments& thresholds);
   void RunMapper(const std::string& step, const std::filesystem::path& target,
                  const Arguments& thresholds);
 
@@ -75,6 +85,7 @@ class ColmapSteps {
   std::filesystem::path workspace_;
   ColmapOptions options_;
   int photos_;
+  int longest_side_ = 0;  // pixels
   StepLedger ledger_;
   std::vector<std::pair<std::string, double>> seconds_;
 };

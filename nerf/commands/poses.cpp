@@ -76,7 +76,8 @@ void AddPosesCommand(CLI::App& app) {
                       "Where transforms.json and colmap/ go; runs/<name>-poses if not given");
   command
       ->add_option("--matcher", colmap.matcher,
-                   "Which pairs are compared: auto, exhaustive (all), sequential (neighbours)")
+                   "Which pairs are compared: auto, exhaustive (all), sequential (neighbours),\n"
+                   "guided (those that look alike)")
       ->capture_default_str();
   command->add_option("--camera-model", colmap.camera_model, "COLMAP's name of the lens model")
       ->capture_default_str();

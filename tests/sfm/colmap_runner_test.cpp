@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "tests/support/colmap_database_file.h"
 #include "tests/support/fake_colmap.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/photo_files.h"
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 using nerf::test::FakeColmap;
 using nerf::test::InputErrorOf;
 using nerf::test::ScratchFolder;
+using nerf::test::WriteColmapDatabase;
 using nerf::test::WritePhoto;
 using testing::AllOf;
 using testing::Contains;
@@ -97,6 +99,18 @@ TEST_F(ColmapRunner, OptionsReachThePrograms) {
   EXPECT_THAT(fake_.Calls()[1], HasSubstr("--SiftMatching.use_gpu 0"));
 }
 
+TEST_F(ColmapRunner, SmallPhotosAreEnlargedToFindFeatures) {
+  WritePhotos(6);
+  WritePhoto(photos_.path() / "large.png", 1300, 10);
+  fake_.Set("models", "0 7\n");
+  Run();
+  EXPECT_THAT(fake_.Calls()[0], HasSubstr("--SiftExtraction.first_octave 0"));
+  options_.max_image_size = 1100;
+  fake_.ForgetCalls();
+  Run();
+  EXPECT_THAT(fake_.Calls()[0], HasSubstr("--SiftExtraction.first_octave -1"));
+}
+
 TEST_F(ColmapRunner, NewerProgramsGetTheNewNames) {
   WritePhotos(6);
   fake_.Set("models", "0 6\n");
@@ -125,6 +139,7 @@ TEST_F(ColmapRunner, FailingStepIsNamedWithReasonAndLogAndRunsAgainNextTime) {
 }
 
 TEST_F(ColmapRunner, FewRegisteredAreTriedAgainThenRefusedWithAdvice) {
+  options_.matcher = "exhaustive";
   WritePhotos(50);
   EXPECT_THAT(Error(), AllOf(HasSubstr("0 of 50"), HasSubstr("overlap"), HasSubstr("mapper.log")));
   EXPECT_THAT(fake_.Calls().back(), HasSubstr("--Mapper.init_min_num_inliers 50"));
@@ -271,10 +286,62 @@ TEST_F(ColmapRunner, ManyNumberedPhotosAreMatchedInSequence) {
   Run();
   EXPECT_THAT(fake_.Calls()[1],
               AllOf(HasSubstr("sequential_matcher"), HasSubstr("--SequentialMatching.overlap 20")));
-  fs::rename(photos_.path() / "p050.png", photos_.path() / "other.png");
+}
+
+class GuidedMatching : public ColmapRunner {
+ protected:
+  // What COLMAP would have found: nothing that fits together, but for the first and the last.
+  void FindFeatures(int count) {
+    std::vector<nerf::test::DatabaseImage> images;
+    for (int i = 0; i < count; ++i) images.push_back({fmt::format("p{:03}.png", i), {1, 2, 3}});
+    WriteColmapDatabase(out_.path() / "prepared.db", images, {{0, count - 1, 90}});
+    const std::string prepared = (out_.path() / "prepared.db").string();
+    fake_.Set("do_feature_extractor", "cp '" + prepared + "' \"$database\"\n");
+    // Coarse matches come into the copy, which has forgotten those of the original.
+    fake_.Set("do_exhaustive_matcher", "cp '" + prepared + "' \"$database\"\n");
+    fake_.Set("do_matches_importer",
+              "cat \"$(dirname \"$database\")/pairs.txt\" >> \"$here/pairs\"\n");
+  }
+};
+
+TEST_F(GuidedMatching, ComparesInFullThosePairsThatLookAlikeAndNeighbours) {
+  WritePhotos(30);
+  fake_.Set("models", "0 30\n");
+  FindFeatures(30);
+  Run();
+  std::vector<std::string> commands = fake_.Commands();
+  commands.erase(std::unique(commands.begin(), commands.end()), commands.end());
+  EXPECT_THAT(commands,
+              ElementsAre("feature_extractor", "exhaustive_matcher", "matches_importer", "mapper"));
+  EXPECT_THAT(fake_.Calls()[1], HasSubstr("coarse.db"));
+  const std::string pairs = fake_.Get("pairs");
+  EXPECT_EQ(std::ranges::count(pairs, '\n'), 29 + 28 + 1);
+  EXPECT_THAT(pairs, AllOf(HasSubstr("p000.png p029.png\n"), HasSubstr("p010.png p012.png\n"),
+                           Not(HasSubstr("p010.png p013.png\n"))));
+  EXPECT_FALSE(fs::exists(Workspace() / "coarse.db"));
+  EXPECT_FALSE(fs::exists(Workspace() / "pairs.txt"));
+}
+
+TEST_F(GuidedMatching, ComparesAllPairsWhereTooFewPhotosWereRegistered) {
+  WritePhotos(30);
+  fake_.Set("models", "0 20\n");
+  FindFeatures(30);
+  Run();
+  EXPECT_THAT(log_.Text(), HasSubstr("20 of 30 registered; the pairs that were left out"));
+  EXPECT_EQ(fake_.Commands().back(), "mapper");
+  EXPECT_THAT(fake_.Calls()[fake_.Calls().size() - 2],
+              AllOf(HasSubstr("exhaustive_matcher"), HasSubstr("database.db")));
   fake_.ForgetCalls();
   Run();
-  EXPECT_THAT(fake_.Commands()[1], "exhaustive_matcher");
+  EXPECT_THAT(fake_.Commands(), IsEmpty());
+}
+
+TEST_F(GuidedMatching, ListsHaveNoRoomForNamesWithSpaces) {
+  WritePhotos(30);
+  fs::rename(photos_.path() / "p007.png", photos_.path() / "p 007.png");
+  fake_.Set("models", "0 30\n");
+  Run();
+  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "exhaustive_matcher", "mapper"));
 }
 
 TEST(NumberedSequence, IsOneTextAroundNumbersOfOneWidth) {
@@ -315,6 +382,7 @@ TEST(ColmapRunnerForReal, NeighbouringPhotosOfTheFoxAreRegistered) {
   ColmapOptions options;
   options.max_image_size = 640;
   options.max_num_features = 1500;
+  options.matcher = "guided";
   ColmapReport report;
   const PosedImages posed = PosesFromPhotos(photos.path(), out.path(), options, &report);
   EXPECT_EQ(report.registered, 5);

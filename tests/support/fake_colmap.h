@@ -25,6 +25,7 @@ class FakeColmap {
     std::filesystem::permissions(folder_.path() / "colmap", std::filesystem::perms::owner_all);
     Set("help",
         "--SiftExtraction.use_gpu arg\n--SiftExtraction.max_image_size arg\n"
+        "--SiftExtraction.first_octave arg\n"
         "--SiftMatching.use_gpu arg\n--ExhaustiveMatching.block_size arg\n"
         "--SequentialMatching.overlap arg\n");
     Set("models", "");
@@ -35,6 +36,12 @@ class FakeColmap {
   ~FakeColmap() { setenv("PATH", old_path_.c_str(), 1); }
 
   void Set(const std::string& file, const std::string& text) const { folder_.Write(file, text); }
+  std::string Get(const std::string& file) const {
+    std::ifstream stream(folder_.path() / file);
+    std::stringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
   void Unset(const std::string& file) const { std::filesystem::remove(folder_.path() / file); }
 
   // The calls so far, "-h" apart, with all arguments.
