@@ -22,7 +22,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GradientScalingOptions, full_distance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OptimizerOptions, learning_rate, beta1, beta2, epsilon,
                                    weight_decay)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScheduleOptions, warmup_steps, final_factor)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, engine, steps, samples_per_batch,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, engine, precision, steps, samples_per_batch,
                                    max_rays_per_batch, seed, checkpoint_every, validate_every)
 namespace kernels {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HashGridOptions, levels, features, log2_table_size,

@@ -80,6 +80,12 @@ std::string ReadWholeFile(const fs::path& path) {
   return bytes;
 }
 
+void RemoveAll(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::remove_all(path, error);
+  if (error) throw InputError("{}: cannot be removed: {}", path.string(), error.message());
+}
+
 void MakeOutputFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);

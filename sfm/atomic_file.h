@@ -15,6 +15,10 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view byt
 // The whole file. Throws InputError naming it when it cannot be read.
 std::string ReadWholeFile(const std::filesystem::path& path);
 
+// Removes a file, or a folder with all that is in it; nothing where nothing is there. Throws
+// InputError naming it when that is not possible.
+void RemoveAll(const std::filesystem::path& path);
+
 // Makes the folder and its parents. Throws InputError naming it when that is not possible, or when
 // files cannot be created in it.
 void MakeOutputFolder(const std::filesystem::path& folder);

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
 
 namespace sfm {
@@ -76,7 +77,7 @@ void Replace(SQLite::Database& database, const std::string& table, std::int64_t 
 }  // namespace
 
 void CopyLargestFeatures(const fs::path& database, const fs::path& coarse, int features) {
-  fs::remove(coarse);
+  RemoveAll(coarse);
   WithDatabase(database, SQLite::OPEN_READONLY, [&](SQLite::Database& full) {
     SQLite::Statement copy(full, "VACUUM INTO ?");
     copy.bind(1, coarse.string());

@@ -43,6 +43,7 @@ struct RenderArguments {
   bool depth = false;
   bool opacity = false;
   bool no_video = false;
+  bool preview = false;
   double quality = 1;
   int threads = 0;
 };
@@ -173,10 +174,17 @@ void RunRender(const RenderArguments& arguments) {
   }
   sfm::ProgressLine progress("rendering", pixels);
   for (const Shot& shot : list.shots) {
+    const Eigen::Isometry3d normalized_from_camera =
+        scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera);
+    const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
+    for (const int factor : {8, 4}) {
+      if (!arguments.preview) break;
+      WriteImage(output / (shot.name + "." + arguments.format),
+                 RenderPreview(*renderer, shot.camera, factor, normalized_from_camera, background,
+                               scene.encoding));
+    }
     const RenderedView view =
-        RenderView(*renderer, shot.camera,
-                   scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
-                   DisplayBackground(scene.has_alpha), scene.encoding,
+        RenderView(*renderer, shot.camera, normalized_from_camera, background, scene.encoding,
                    [&](std::int64_t of_this) { progress.Update(done + of_this, shot.name); });
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
     WriteShot(view, scene, arguments, output / shot.name);
@@ -221,6 +229,8 @@ void AddRenderCommand(CLI::App& app) {
   command->add_flag("--depth", arguments->depth,
                     "also depth along the ray: EXR in the input's units, and a picture");
   command->add_flag("--opacity", arguments->opacity, "also opacity, as PNG");
+  command->add_flag("--preview", arguments->preview,
+                    "write each picture coarse first, then finer, then whole");
   command->add_flag("--no-video", arguments->no_video, "make no MP4 of a path");
   command
       ->add_option("--quality", arguments->quality,

@@ -4,7 +4,15 @@
 #include <span>
 #include <vector>
 
+#include "nerf/kernels/matrix_product.h"
+
 namespace nerf::kernels {
+
+// What products round their factors to; sums, activations and weights stay float.
+enum class Precision {
+  kFloat,
+  kBfloat16,  // see bfloat16_product.h
+};
 
 // A small fully connected network, ReLU between its layers, no biases, for a tile of samples whose
 // activations stay in a core's cache. Activations are rows, one a sample, of PaddedWidth floats
@@ -12,7 +20,7 @@ namespace nerf::kernels {
 class TileMlp {
  public:
   // widths: inputs, hidden layers, outputs.
-  explicit TileMlp(std::vector<int> widths);
+  explicit TileMlp(std::vector<int> widths, Precision precision = Precision::kFloat);
 
   int Layers() const { return static_cast<int>(widths_.size()) - 1; }
   int Width(int layer) const { return widths_[layer]; }
@@ -35,10 +43,25 @@ class TileMlp {
   void AddGradients(std::span<const float> gradients, std::span<float* const> dL_dweights) const;
 
  private:
+  Epilogue ForwardEpilogue(int layer) const {
+    return layer + 1 < Layers() ? Epilogue::kStoreRelu : Epilogue::kStore;
+  }
+  static Epilogue BackwardEpilogue(int layer) {
+    return layer > 0 ? Epilogue::kStoreMasked : Epilogue::kStore;
+  }
+  void ForwardLayer(int layer, std::int64_t samples, std::span<float* const> rows) const;
+  void BackwardLayer(int layer, std::int64_t samples, std::span<float* const> rows,
+                     float* gradients) const;
+  void ForwardLayerInPairs(int layer, std::int64_t samples, std::span<float* const> rows) const;
+  void BackwardLayerInPairs(int layer, std::int64_t samples, std::span<float* const> rows,
+                            float* gradients) const;
+
   std::vector<int> widths_;
+  Precision precision_;
   std::vector<std::int64_t> offset_;  // [Layers() + 1] first float of each layer below
   std::vector<float> in_from_out_;    // W    [padded outputs, padded inputs] a layer, as gradients
   std::vector<float> out_from_in_;    // W^T  [padded inputs, padded outputs] a layer
+  std::vector<std::uint32_t> in_from_out_pairs_, out_from_in_pairs_;  // the same by PairRows
 };
 
 }  // namespace nerf::kernels

@@ -61,8 +61,8 @@ void AddWeightGradients(std::span<const float> sums, const TileMlp& layout, cons
   layout.AddGradients(sums, gradients);
 }
 
-TileDensity::TileDensity(const HashEncoding& hash, const Mlp& network)
-    : hash_(hash), module_(network), network_(network.Widths()) {
+TileDensity::TileDensity(const HashEncoding& hash, const Mlp& network, kernels::Precision precision)
+    : hash_(hash), module_(network), network_(network.Widths(), precision) {
   TORCH_CHECK(hash.Table().scalar_type() == torch::kFloat,
               "TileDensity: parameters must be float, not ", hash.Table().scalar_type());
 }

@@ -46,7 +46,8 @@ void AddWeightGradients(std::span<const float> sums, const kernels::TileMlp& lay
 class TileDensity {
  public:
   // The modules must outlive it.
-  TileDensity(const HashEncoding& hash, const Mlp& network);
+  TileDensity(const HashEncoding& hash, const Mlp& network,
+              kernels::Precision precision = kernels::Precision::kFloat);
 
   // Takes over what others change between batches. The table is read where it is.
   void Refresh(std::vector<float> level_weights);

@@ -12,10 +12,10 @@ namespace nerf {
 
 using kernels::PaddedWidth;
 
-TileField::TileField(std::shared_ptr<RadianceField> field)
+TileField::TileField(std::shared_ptr<RadianceField> field, kernels::Precision precision)
     : field_(std::move(field)),
-      density_(field_->Hash(), field_->DensityNetwork()),
-      color_(field_->ColorNetwork().Widths()),
+      density_(field_->Hash(), field_->DensityNetwork(), precision),
+      color_(field_->ColorNetwork().Widths(), precision),
       geometry_features_(density_.Outputs() - 1) {}
 
 void TileField::Refresh() {

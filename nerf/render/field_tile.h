@@ -25,7 +25,7 @@ struct FieldGradients {
 // RadianceField for tiles of samples (see TileDensity): the same formula on the same parameters.
 class TileField {
  public:
-  explicit TileField(std::shared_ptr<RadianceField> field);
+  TileField(std::shared_ptr<RadianceField> field, kernels::Precision precision);
 
   // Takes over the networks' weights and the detail, which others change between batches.
   void Refresh();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "nerf/data/camera.h"
 #include "nerf/data/pixel_sampler.h"
 
 namespace nerf {
@@ -71,6 +72,25 @@ RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
     if (progress) progress(std::min(all, all * last / blocks));
   }
   return view;
+}
+
+Image RenderPreview(RayRenderer& renderer, const sfm::Camera& camera, int factor,
+                    const Eigen::Isometry3d& normalized_from_camera,
+                    const Eigen::Vector3f& background, ColorEncoding encoding) {
+  factor = std::clamp(factor, 1, std::min(camera.width, camera.height));
+  const sfm::Camera coarse = Downscaled(camera, factor);
+  const RenderedView view =
+      RenderView(renderer, coarse, normalized_from_camera, background, encoding);
+  Image image(camera.width, camera.height, 3, encoding);
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const int from_x = std::min(x / factor, coarse.width - 1);
+      const int from_y = std::min(y / factor, coarse.height - 1);
+      std::copy_n(&view.rgb.pixels[3 * (static_cast<std::size_t>(from_y) * coarse.width + from_x)],
+                  3, &image.pixels[3 * (static_cast<std::size_t>(y) * camera.width + x)]);
+    }
+  }
+  return image;
 }
 
 }  // namespace nerf

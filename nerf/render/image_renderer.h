@@ -25,4 +25,10 @@ RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
                         const Eigen::Vector3f& background, ColorEncoding encoding,
                         const std::function<void(std::int64_t)>& progress = {});
 
+// The picture of a camera from every `factor`-th ray across and down, each repeated over the pixels
+// that it stands for: a first look, in 1 / factor^2 of the time.
+Image RenderPreview(RayRenderer& renderer, const sfm::Camera& camera, int factor,
+                    const Eigen::Isometry3d& normalized_from_camera,
+                    const Eigen::Vector3f& background, ColorEncoding encoding);
+
 }  // namespace nerf

@@ -55,8 +55,12 @@ struct PacketRenderer::Tile {
 PacketRenderer::PacketRenderer(std::shared_ptr<RadianceField> field,
                                std::shared_ptr<OccupancyGrid> grid,
                                std::shared_ptr<ProposalField> proposal, const MarchOptions& march,
-                               ProposalOptions proposal_options, const RenderQuality& quality)
-    : field_(std::move(field)), grid_(std::move(grid)), march_(march), quality_(quality) {
+                               ProposalOptions proposal_options, const RenderQuality& quality,
+                               kernels::Precision precision)
+    : field_(std::move(field), precision),
+      grid_(std::move(grid)),
+      march_(march),
+      quality_(quality) {
   if (proposal) {
     proposal_.emplace(std::move(proposal),
                       WithSamples(std::move(proposal_options), quality.samples), march);

@@ -23,7 +23,8 @@ class PacketRenderer : public RayRenderer {
   // Where there is a proposal (it may be null) it places the samples, else the grid does.
   PacketRenderer(std::shared_ptr<RadianceField> field, std::shared_ptr<OccupancyGrid> grid,
                  std::shared_ptr<ProposalField> proposal, const MarchOptions& march,
-                 ProposalOptions proposal_options, const RenderQuality& quality);
+                 ProposalOptions proposal_options, const RenderQuality& quality,
+                 kernels::Precision precision = kernels::Precision::kFloat);
 
   RenderOutput Render(const RayBatch& rays) override;
 

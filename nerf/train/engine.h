@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "nerf/data/pixel_sampler.h"
+#include "nerf/kernels/mlp.h"
 #include "nerf/render/ray_renderer.h"
 #include "nerf/sampling/proposal_options.h"
 #include "nerf/sampling/ray_marcher.h"
@@ -31,6 +32,8 @@ struct EngineParts {
   ProposalOptions proposal_options;
   LossOptions loss;
   GradientScalingOptions gradient_scaling;
+  // Of the networks' products in FusedEngine; LibTorchEngine is exact to float.
+  kernels::Precision precision = kernels::Precision::kFloat;
 };
 
 // Evaluates rays, with gradients or without. Two engines, one meaning: LibTorchEngine composes

@@ -50,7 +50,8 @@ struct FusedEngine::Worker {
   std::vector<float> dL_drgb, dL_dopacity, dL_ddepth, dL_dsigma, dL_dradiance, dL_dbackground;
 };
 
-FusedEngine::FusedEngine(EngineParts parts) : parts_(std::move(parts)), field_(parts_.field) {
+FusedEngine::FusedEngine(EngineParts parts)
+    : parts_(std::move(parts)), field_(parts_.field, parts_.precision) {
   if (parts_.proposal) proposal_.emplace(parts_.proposal, parts_.proposal_options, parts_.march);
 }
 

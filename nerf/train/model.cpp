@@ -44,6 +44,11 @@ SceneFacts SceneFromJson(const json& scene) {
 
 }  // namespace
 
+kernels::Precision PrecisionOf(const Config& config) {
+  return config.train.precision == "bfloat16" ? kernels::Precision::kBfloat16
+                                              : kernels::Precision::kFloat;
+}
+
 Model MakeModel(const Config& config, const SceneFacts& scene) {
   Model model;
   model.config = config;
@@ -54,8 +59,9 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   if (UsesProposal(config.march, scene.has_alpha)) {
     model.proposal = std::make_shared<ProposalField>(config.proposal, config.train.seed);
   }
-  const EngineParts parts = {model.field,     model.grid,  model.proposal,         config.march,
-                             config.proposal, config.loss, config.gradient_scaling};
+  const EngineParts parts = {
+      model.field,     model.grid,  model.proposal,          config.march,
+      config.proposal, config.loss, config.gradient_scaling, PrecisionOf(config)};
   if (config.train.engine == "fused") {
     model.engine = std::make_shared<FusedEngine>(parts);
   } else {

@@ -5,6 +5,7 @@
 
 #include "nerf/config.h"
 #include "nerf/data/image.h"
+#include "nerf/kernels/mlp.h"
 #include "sfm/scene_normalization.h"
 
 namespace nerf {
@@ -31,6 +32,9 @@ struct Model {
   std::shared_ptr<ProposalField> proposal;  // where it and not the grid places the samples
   std::shared_ptr<Engine> engine;
 };
+
+// What config.train.precision says, "float" or "bfloat16".
+kernels::Precision PrecisionOf(const Config& config);
 
 // A new model; its parameters start from config.train.seed.
 Model MakeModel(const Config& config, const SceneFacts& scene);

@@ -59,6 +59,10 @@ void TrainOptions::Check() const {
   if (engine != "fused" && engine != "libtorch") {
     throw sfm::InputError("config: train.engine is \"{}\"; use \"fused\" or \"libtorch\"", engine);
   }
+  if (precision != "float" && precision != "bfloat16") {
+    throw sfm::InputError("config: train.precision is \"{}\"; use \"float\" or \"bfloat16\"",
+                          precision);
+  }
   if (steps < 1) throw sfm::InputError("config: train.steps is {}; use 1 or more", steps);
   if (samples_per_batch < 1 || samples_per_batch > (1 << 24)) {
     throw sfm::InputError("config: train.samples_per_batch is {}; use 1 to {}", samples_per_batch,

@@ -11,7 +11,7 @@ std::shared_ptr<RayRenderer> ViewRenderer(const Model& model, double quality) {
   const RenderQuality of_dial = RenderQuality::Of(quality, config.march, config.proposal);
   if (quality == 1) return model.engine;
   return std::make_shared<PacketRenderer>(model.field, model.grid, model.proposal, config.march,
-                                          config.proposal, of_dial);
+                                          config.proposal, of_dial, PrecisionOf(config));
 }
 
 }  // namespace nerf

@@ -1,8 +1,11 @@
 // Whole training steps and renderings of both engines on all threads, and LibTorch's own products.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include "nerf/config.h"
 #include "nerf/field/proposal_field.h"
@@ -11,6 +14,7 @@
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/train/fused_engine.h"
 #include "nerf/train/libtorch_engine.h"
+#include "tests/benchmarks/machine_limits.h"
 
 namespace nerf {
 namespace {
@@ -19,8 +23,9 @@ using benchmark::Counter;
 
 // The default field, a grid whose matter is a shell, and rays from around it.
 struct Scene {
-  explicit Scene(std::int64_t rays) {
+  explicit Scene(std::int64_t rays, bool with_proposal = false) {
     at::set_num_threads(NumThreads());
+    if (with_proposal) proposal = std::make_shared<ProposalField>(config.proposal, 1);
     field = std::make_shared<RadianceField>(config.encoding, config.field, ColorEncoding::kSrgb, 1);
     grid = std::make_shared<OccupancyGrid>(config.occupancy, config.march.StepLength());
     grid->KeepVisible([](const Eigen::Vector3f& p, float) {
@@ -44,9 +49,9 @@ struct Scene {
     }
   }
   template <class E>
-  std::unique_ptr<Engine> Make() {
+  std::unique_ptr<Engine> Make(kernels::Precision precision) {
     return std::make_unique<E>(EngineParts{field, grid, proposal, config.march, config.proposal,
-                                           config.loss, config.gradient_scaling});
+                                           config.loss, config.gradient_scaling, precision});
   }
   Config config;
   std::shared_ptr<RadianceField> field;
@@ -55,25 +60,82 @@ struct Scene {
   TargetBatch batch;
 };
 
+// What this machine could do at most, all threads together, measured here: seconds a sample of the
+// default field takes when its networks run at the peak of fused multiply-adds in float and its
+// encoding at the rate of bare random reads, twice for the way back (read and written).
+double LeastSecondsASample(const Scene& scene) {
+  static const double seconds = [&] {
+    using Clock = std::chrono::steady_clock;
+    const auto rate_of = [](const auto& work) {  // of one thread, units a second
+      double best = 0;
+      for (int attempt = 0; attempt < 5; ++attempt) {
+        const auto begin = Clock::now();
+        const double units = work();
+        const std::chrono::duration<double> elapsed = Clock::now() - begin;
+        best = std::max(best, units / elapsed.count());
+      }
+      return best;
+    };
+    const double flops = rate_of([] {
+      std::int64_t operations = 0;
+      benchmark::DoNotOptimize(benchmarks::FusedMultiplyAdds(3000000, operations));
+      return static_cast<double>(operations);
+    });
+    const auto& options = scene.config.encoding;
+    const std::int64_t entries = std::int64_t{options.levels} << options.log2_table_size;
+    std::vector<float> table(4 * entries, 1.0f);
+    std::vector<std::uint32_t> places(1 << 22);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      places[i] = static_cast<std::uint32_t>(i * 2654435761u % static_cast<std::uint64_t>(entries));
+    }
+    const double reads = rate_of([&] {
+      benchmark::DoNotOptimize(benchmarks::SumEntries(table, places));
+      return static_cast<double>(places.size());
+    });
+    double multiply_adds = 0;
+    for (const Mlp* network : {&scene.field->DensityNetwork(), &scene.field->ColorNetwork()}) {
+      const std::vector<int> widths = network->Widths();
+      for (std::size_t l = 0; l + 1 < widths.size(); ++l)
+        multiply_adds += widths[l] * widths[l + 1];
+    }
+    return (3 * 2 * multiply_adds / flops + 3 * 8.0 * options.levels / reads) / NumThreads();
+  }();
+  return seconds;
+}
+
 // Items are samples with gradients.
-template <class E>
+template <class E, kernels::Precision kPrecision = kernels::Precision::kFloat>
 void TrainingStep(benchmark::State& state) {
-  Scene scene(1024);
-  const auto engine = scene.Make<E>();
+  const bool with_proposal = state.range(0) != 0;
+  Scene scene(1024, with_proposal);
+  const auto engine = scene.Make<E>(kPrecision);
   std::int64_t samples = 0;
+  const auto begin = std::chrono::steady_clock::now();
   for (auto _ : state) samples += engine->AccumulateGradients(scene.batch).shaded;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   state.SetItemsProcessed(samples);
   state.counters["samples/ray"] =
       static_cast<double>(samples) / 1024.0 / static_cast<double>(state.iterations());
+  state.counters["of_bound"] =
+      static_cast<double>(samples) * LeastSecondsASample(scene) / elapsed.count();
 }
-BENCHMARK(TrainingStep<LibTorchEngine>)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(TrainingStep<FusedEngine>)->UseRealTime()->Unit(benchmark::kMillisecond);
+constexpr auto kBfloat16 = kernels::Precision::kBfloat16;
+#define NERF_TRAINING_STEP(...)        \
+  BENCHMARK(TrainingStep<__VA_ARGS__>) \
+      ->ArgName("proposal")            \
+      ->Arg(0)                         \
+      ->Arg(1)                         \
+      ->UseRealTime()                  \
+      ->Unit(benchmark::kMillisecond)
+NERF_TRAINING_STEP(LibTorchEngine);
+NERF_TRAINING_STEP(FusedEngine);
+NERF_TRAINING_STEP(FusedEngine, kBfloat16);
 
 // Items are rays.
 template <class E>
 void Render(benchmark::State& state) {
   Scene scene(4096);
-  const auto engine = scene.Make<E>();
+  const auto engine = scene.Make<E>(kernels::Precision::kFloat);
   for (auto _ : state) benchmark::DoNotOptimize(engine->Render(scene.batch.rays).rgb.data());
   state.SetItemsProcessed(state.iterations() * scene.batch.rays.Size());
 }

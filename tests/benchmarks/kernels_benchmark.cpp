@@ -105,7 +105,8 @@ BENCHMARK(ProductForwardLibxsmm);
 
 // The networks of the default field, whole.
 struct Network {
-  explicit Network(std::vector<int> widths) : mlp(widths), gradients(mlp.GradientSize()) {
+  explicit Network(std::vector<int> widths, Precision precision)
+      : mlp(widths, precision), gradients(mlp.GradientSize()) {
     std::vector<std::vector<float>> weights;
     std::vector<const float*> pointers;
     for (int l = 0; l < mlp.Layers(); ++l) {
@@ -124,20 +125,26 @@ struct Network {
   std::vector<float> gradients;
 };
 
-Network NetworkOf(std::int64_t which) {
-  return which == 0 ? Network({32, 64, 16}) : Network({31, 64, 64, 3});
+// The density network and the colour network, in float and in bfloat16.
+Network NetworkOf(const benchmark::State& state) {
+  const Precision precision = state.range(1) == 0 ? Precision::kFloat : Precision::kBfloat16;
+  return state.range(0) == 0 ? Network({32, 64, 16}, precision)
+                             : Network({31, 64, 64, 3}, precision);
+}
+void EveryNetwork(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"color", "bfloat16"})->ArgsProduct({{0, 1}, {0, 1}});
 }
 
 void NetworkForward(benchmark::State& state) {
-  Network network = NetworkOf(state.range(0));
+  Network network = NetworkOf(state);
   for (auto _ : state) network.mlp.Forward(kTile, network.rows);
   SetFlops(state, network.flops);
   state.SetItemsProcessed(state.iterations() * kTile);
 }
-BENCHMARK(NetworkForward)->Arg(0)->Arg(1);
+BENCHMARK(NetworkForward)->Apply(EveryNetwork);
 
 void NetworkForwardAndBackward(benchmark::State& state) {
-  Network network = NetworkOf(state.range(0));
+  Network network = NetworkOf(state);
   for (auto _ : state) {
     network.mlp.Forward(kTile, network.rows);
     network.mlp.Backward(kTile, network.rows, network.gradients);
@@ -145,7 +152,7 @@ void NetworkForwardAndBackward(benchmark::State& state) {
   SetFlops(state, 3 * network.flops);
   state.SetItemsProcessed(state.iterations() * kTile);
 }
-BENCHMARK(NetworkForwardAndBackward)->Arg(0)->Arg(1);
+BENCHMARK(NetworkForwardAndBackward)->Apply(EveryNetwork);
 
 // 8 levels of 4 features, by the table's size as a power of two; samples along straight rays.
 struct Encoding {

@@ -135,6 +135,54 @@ TEST_P(TileMlps, ForwardAndBackwardMatchPlainLoopsAndCentralDifferences) {
   }
 }
 
+// Three layers of rounding, and on the way back also the neurons whose sign it turned: what a
+// training with bfloat16 must bear.
+TEST_P(TileMlps, Bfloat16StaysCloseToFloat) {
+  const std::vector<int> widths = {31, 64, 64, 3};
+  constexpr std::int64_t kSamples = 37;
+  Make(widths, kSamples);
+  std::vector<std::vector<float>> given;
+  std::vector<const float*> pointers;
+  for (const auto& layer : weights_) given.emplace_back(layer.begin(), layer.end());
+  for (const auto& layer : given) pointers.push_back(layer.data());
+  const auto run = [&](Precision precision) {
+    TileMlp mlp(widths, precision);
+    mlp.Load(pointers);
+    std::vector<std::vector<float>> storage;
+    std::vector<float*> rows;
+    for (const int width : widths) storage.emplace_back(kSamples * PaddedWidth(width), 0.0f);
+    for (auto& layer : storage) rows.push_back(layer.data());
+    for (std::int64_t s = 0; s < kSamples; ++s) {
+      for (int i = 0; i < widths[0]; ++i) {
+        rows[0][s * PaddedWidth(widths[0]) + i] = static_cast<float>(inputs_[s * widths[0] + i]);
+      }
+    }
+    mlp.Forward(kSamples, rows);
+    std::vector<std::vector<float>> results = {storage.back()};
+    for (std::int64_t s = 0; s < kSamples; ++s) {
+      for (int o = 0; o < widths.back(); ++o) {
+        rows[3][s * PaddedWidth(3) + o] = static_cast<float>(direction_[s * widths.back() + o]);
+      }
+    }
+    std::vector<float> gradients(mlp.GradientSize(), 0.0f);
+    mlp.Backward(kSamples, rows, gradients);
+    results.push_back(storage.front());
+    results.push_back(gradients);
+    return results;
+  };
+  const auto exact = run(Precision::kFloat), rounded = run(Precision::kBfloat16);
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < exact[k].size(); ++i) {
+      const double difference = static_cast<double>(rounded[k][i] - exact[k][i]);
+      error += difference * difference;
+      size += static_cast<double>(exact[k][i]) * static_cast<double>(exact[k][i]);
+    }
+    EXPECT_LT(std::sqrt(error / size), k == 0 ? 0.02 : 0.08) << k;
+    EXPECT_GT(error, 0) << k;  // it did round
+  }
+}
+
 NERF_FOR_EVERY_SIMD_LEVEL(TileMlps);
 
 }  // namespace

@@ -218,5 +218,27 @@ TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {
   }
 }
 
+TEST(RenderPreview, ShowsTheWholePictureFromFewRays) {
+  sfm::Camera camera;
+  camera.width = 21;
+  camera.height = 13;
+  camera.params = {100, 100, 10.5, 6.5};
+  DirectionRenderer renderer;
+  const Image image = RenderPreview(renderer, camera, 4, Eigen::Isometry3d::Identity(),
+                                    Eigen::Vector3f::Zero(), ColorEncoding::kLinear);
+  EXPECT_EQ(image.width, 21);
+  EXPECT_EQ(image.height, 13);
+  EXPECT_LT(renderer.directions.size() / 3, 21u * 13u / 4u);
+  // The middle of the first block of 4 x 4 pixels.
+  const Eigen::Vector3d d = Eigen::Vector3d((2 - 10.5) / 100, (2 - 6.5) / 100, 1).normalized();
+  for (int pixel : {0, 3, 21, 3 * 21 + 3}) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.pixels[3 * pixel + c], d[c], 1e-6);
+  }
+  EXPECT_NE(image.pixels[3 * 4], image.pixels[0]);
+  for (const float value : image.pixels) EXPECT_TRUE(std::isfinite(value));
+  RenderPreview(renderer, camera, 100, Eigen::Isometry3d::Identity(), Eigen::Vector3f::Zero(),
+                ColorEncoding::kLinear);  // larger than the picture
+}
+
 }  // namespace
 }  // namespace nerf

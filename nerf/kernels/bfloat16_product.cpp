@@ -1,0 +1,186 @@
+#include "nerf/kernels/bfloat16_product.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nerf/kernels/bfloat16_product.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h:
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace nerf::kernels {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, kRowPadding>;
+using DU = hn::RebindToUnsigned<D>;
+using V = hn::Vec<D>;
+using VU = hn::Vec<DU>;
+
+// A float's bits, rounded to nearest even so that the upper half is the bfloat16.
+template <class Tag, class Vector>
+HWY_INLINE auto Rounded(Tag, Vector value) {
+  const hn::RebindToUnsigned<Tag> du;
+  const auto bits = hn::BitCast(du, value);
+  const auto odd = hn::And(hn::ShiftRight<16>(bits), hn::Set(du, 1u));
+  const auto rounded = hn::Add(bits, hn::Add(odd, hn::Set(du, 0x7fffu)));
+  // A NaN is cut, not rounded, which could make it infinite; one bit keeps it a NaN.
+  const auto nan = hn::Or(bits, hn::Set(du, 0x400000u));
+  return hn::IfThenElse(hn::RebindMask(du, hn::IsNaN(value)), nan, rounded);
+}
+
+template <class Tag, class Vector>
+HWY_INLINE auto Paired(Tag d, Vector lower, Vector upper) {
+  const hn::RebindToUnsigned<Tag> du;
+  return hn::Or(hn::ShiftRight<16>(Rounded(d, lower)),
+                hn::And(Rounded(d, upper), hn::Set(du, 0xffff0000u)));
+}
+
+void PairRowsImpl(const float* from, std::int64_t row, std::int64_t rows, std::int64_t columns,
+                  std::uint32_t* pairs) {
+  const D d;
+  const DU du;
+  const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
+  for (std::int64_t r = 0; r < rows; r += 2) {
+    const float* const lower = from + r * row;
+    for (std::int64_t c = 0; c < columns; c += lanes) {
+      const V upper = r + 1 < rows ? hn::LoadU(d, lower + row + c) : hn::Zero(d);
+      hn::StoreU(Paired(d, hn::LoadU(d, lower + c), upper), du, pairs + c);
+    }
+    pairs += columns;
+  }
+}
+
+void PairColumnsImpl(const float* from, std::int64_t row, std::int64_t rows, std::int64_t columns,
+                     std::uint32_t* pairs) {
+  // Two of these vectors are as many floats as rows are padded to.
+  const hn::CappedTag<float, kRowPadding / 2> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
+  for (std::int64_t r = 0; r < rows; ++r) {
+    for (std::int64_t c = 0; c < columns; c += 2 * lanes) {
+      hn::Vec<decltype(d)> even, odd;
+      hn::LoadInterleaved2(d, from + r * row + c, even, odd);
+      hn::StoreU(Paired(d, even, odd), du, pairs + r * (columns / 2) + c / 2);
+    }
+  }
+}
+
+// As in matrix_product.cpp, with two products a step.
+constexpr int kMostVectors = 2;
+constexpr int kMostRows = 4;
+
+template <Epilogue kEpilogue>
+HWY_INLINE void Finish(V value, float* at) {
+  const D d;
+  if constexpr (kEpilogue == Epilogue::kAdd) value = hn::Add(hn::LoadU(d, at), value);
+  if constexpr (kEpilogue == Epilogue::kStoreRelu) {
+    value = hn::IfThenZeroElse(hn::Lt(value, hn::Zero(d)), value);
+  }
+  if constexpr (kEpilogue == Epilogue::kStoreMasked) {
+    value = hn::IfThenElseZero(hn::Gt(hn::LoadU(d, at), hn::Zero(d)), value);
+  }
+  hn::StoreU(value, d, at);
+}
+
+template <int kRows, int kVectors, Epilogue kEpilogue>
+HWY_INLINE void Block(const Bfloat16Product& p, std::int64_t row, std::int64_t column) {
+  const D d;
+  const DU du;
+  const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
+  const VU upper = hn::Set(du, 0xffff0000u);
+  V sum[kRows][kVectors];
+  for (int r = 0; r < kRows; ++r) {
+    for (int v = 0; v < kVectors; ++v) sum[r][v] = hn::Zero(d);
+  }
+  for (std::int64_t k = 0; k < p.inner; ++k) {
+    V even[kVectors], odd[kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+      const VU pair = hn::LoadU(du, p.b + k * p.b_row + column + v * lanes);
+      even[v] = hn::BitCast(d, hn::ShiftLeft<16>(pair));
+      odd[v] = hn::BitCast(d, hn::And(pair, upper));
+    }
+    for (int r = 0; r < kRows; ++r) {
+      const VU pair = hn::Set(du, p.a[(row + r) * p.a_row + k * p.a_inner]);
+      const V a_even = hn::BitCast(d, hn::ShiftLeft<16>(pair));
+      const V a_odd = hn::BitCast(d, hn::And(pair, upper));
+      for (int v = 0; v < kVectors; ++v) {
+        sum[r][v] = hn::MulAdd(a_odd, odd[v], hn::MulAdd(a_even, even[v], sum[r][v]));
+      }
+    }
+  }
+  for (int r = 0; r < kRows; ++r) {
+    for (int v = 0; v < kVectors; ++v) {
+      Finish<kEpilogue>(sum[r][v], p.c + (row + r) * p.c_row + column + v * lanes);
+    }
+  }
+}
+
+template <int kVectors, Epilogue kEpilogue>
+HWY_INLINE void Columns(const Bfloat16Product& p, std::int64_t column) {
+  std::int64_t row = 0;
+  for (; row + kMostRows <= p.rows; row += kMostRows) {
+    Block<kMostRows, kVectors, kEpilogue>(p, row, column);
+  }
+  for (; row < p.rows; ++row) Block<1, kVectors, kEpilogue>(p, row, column);
+}
+
+template <Epilogue kEpilogue>
+void AllColumns(const Bfloat16Product& p) {
+  const auto lanes = static_cast<std::int64_t>(hn::Lanes(D()));
+  std::int64_t column = 0;
+  for (; column + kMostVectors * lanes <= p.columns; column += kMostVectors * lanes) {
+    Columns<kMostVectors, kEpilogue>(p, column);
+  }
+  for (; column < p.columns; column += lanes) Columns<1, kEpilogue>(p, column);
+}
+
+// Whether this level is one at which native products may run: tests choose lower ones.
+bool IsAvx512Impl() { return HWY_TARGET <= HWY_AVX3; }
+
+void MultiplyImpl(const Bfloat16Product& p, Epilogue epilogue) {
+  switch (epilogue) {
+    case Epilogue::kStore:
+      return AllColumns<Epilogue::kStore>(p);
+    case Epilogue::kAdd:
+      return AllColumns<Epilogue::kAdd>(p);
+    case Epilogue::kStoreRelu:
+      return AllColumns<Epilogue::kStoreRelu>(p);
+    case Epilogue::kStoreMasked:
+      return AllColumns<Epilogue::kStoreMasked>(p);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace nerf::kernels
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+#include "nerf/kernels/bfloat16_native.h"
+
+namespace nerf::kernels {
+HWY_EXPORT(PairRowsImpl);
+HWY_EXPORT(PairColumnsImpl);
+HWY_EXPORT(MultiplyImpl);
+HWY_EXPORT(IsAvx512Impl);
+
+bool HasBfloat16Products() {
+  return native::HasBfloat16() && HWY_DYNAMIC_DISPATCH(IsAvx512Impl)();
+}
+
+void PairColumns(const float* from, std::int64_t row, std::int64_t rows, std::int64_t columns,
+                 std::uint32_t* pairs) {
+  HWY_DYNAMIC_DISPATCH(PairColumnsImpl)(from, row, rows, columns, pairs);
+}
+
+void PairRows(const float* from, std::int64_t row, std::int64_t rows, std::int64_t columns,
+              std::uint32_t* pairs) {
+  HWY_DYNAMIC_DISPATCH(PairRowsImpl)(from, row, rows, columns, pairs);
+}
+
+void Multiply(const Bfloat16Product& product, Epilogue epilogue) {
+  if (HasBfloat16Products()) return native::Multiply(product, epilogue);
+  HWY_DYNAMIC_DISPATCH(MultiplyImpl)(product, epilogue);
+}
+}  // namespace nerf::kernels
+#endif

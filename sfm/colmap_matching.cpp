@@ -1,0 +1,88 @@
+// The steps of ColmapSteps that compare photographs with one another.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "sfm/atomic_file.h"
+#include "sfm/colmap_database.h"
+#include "sfm/colmap_steps.h"
+#include "sfm/progress.h"
+
+namespace sfm {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSequenceOverlap = 20;  // neighbours
+
+// Of the guided match: features a photograph to compare all with all, pairs a photograph to compare
+// in full, and neighbours by name that are compared anyway.
+constexpr int kCoarseFeatures = 512;
+constexpr int kPairsEach = 12;
+constexpr int kNeighbours = 2;
+
+}  // namespace
+
+void ColmapSteps::Match(const std::string& matcher) {
+  Step("matches", {matcher}, Database(), [&](StepLedger::State state) {
+    // Pairs that are matched already are skipped by COLMAP itself.
+    if (state == StepLedger::State::kChanged) {
+      RunOrThrow("clean", "database_cleaner",
+                 {"--database_path", Database().string(), "--type", "matches"});
+    }
+    if (matcher == "sequential") return MatchSequentially();
+    if (matcher == "guided") return MatchGuided();
+    MatchExhaustively("matches");
+  });
+}
+
+void ColmapSteps::MatchExhaustively(const std::string& step) {
+  Arguments arguments = MatchingArguments("exhaustive_matcher", Database());
+  // COLMAP reports block by block: about 64 signs of progress, whatever the number.
+  AddKnown("exhaustive_matcher", {"ExhaustiveMatching.block_size"}, std::clamp(photos_ / 8, 8, 50),
+           arguments);
+  RunOrThrow(step, "exhaustive_matcher", arguments);
+}
+
+void ColmapSteps::MatchSequentially() {
+  Arguments arguments = MatchingArguments("sequential_matcher", Database());
+  AddKnown("sequential_matcher", {"SequentialMatching.overlap"}, kSequenceOverlap, arguments);
+  AddKnown("sequential_matcher", {"SequentialMatching.quadratic_overlap"}, 1, arguments);
+  RunOrThrow("matches", "sequential_matcher", arguments);
+}
+
+void ColmapSteps::MatchGuided() {
+  const fs::path coarse = workspace_ / "coarse.db";
+  CopyLargestFeatures(Database(), coarse, kCoarseFeatures);
+  RunOrThrow("matches_coarse", "exhaustive_matcher",
+             MatchingArguments("exhaustive_matcher", coarse));
+  const auto names = ReadImageNames(Database());
+  const auto pairs = SelectPairs(ReadMatchedPairs(coarse), names, kPairsEach, kNeighbours);
+  RemoveAll(coarse);
+  // COLMAP is silent until it has matched all pairs of a list: short lists, to see it move.
+  const fs::path list = workspace_ / "pairs.txt";
+  const std::size_t part = std::max<std::size_t>(32, pairs.size() / 20);
+  ProgressLine progress("matches", static_cast<std::int64_t>(pairs.size()));
+  for (std::size_t first = 0; first < pairs.size(); first += part) {
+    std::string text;
+    for (std::size_t i = first; i < std::min(pairs.size(), first + part); ++i) {
+      text += pairs[i].first + " " + pairs[i].second + "\n";
+    }
+    WriteFileAtomically(list, text);
+    Arguments arguments = MatchingArguments("matches_importer", Database());
+    arguments.insert(arguments.end(),
+                     {"--match_list_path", list.string(), "--match_type", "pairs"});
+    RunOrThrow("matches", "matches_importer", arguments);
+    progress.Update(static_cast<std::int64_t>(std::min(pairs.size(), first + part)));
+  }
+  RemoveAll(list);
+}
+
+ColmapSteps::Arguments ColmapSteps::MatchingArguments(const std::string& command,
+                                                      const fs::path& database) {
+  Arguments arguments = {"--database_path", database.string()};
+  AddKnown(command, {"SiftMatching.use_gpu", "FeatureMatching.use_gpu"}, 0, arguments);
+  AddThreads(command, {"SiftMatching.num_threads", "FeatureMatching.num_threads"}, arguments);
+  return arguments;
+}
+
+}  // namespace sfm
