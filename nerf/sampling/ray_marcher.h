@@ -16,7 +16,7 @@ struct MarchOptions {
   std::string sampler = "auto";
   double near_distance = 0.05;       // first sample, in normalized scene units
   double far_distance = 100.0;       // last sample, in normalized scene units
-  int steps_per_unit = 64;           // steps in a unit of contracted space
+  int steps_per_unit = 128;          // steps in a unit of contracted space
   double stop_transmittance = 1e-4;  // a ray ends where less light than this gets through
 
   void Check() const;

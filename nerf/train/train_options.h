@@ -48,7 +48,7 @@ struct TrainOptions {
   std::string precision = "float";
   std::int64_t steps = 5000;
   std::int64_t samples_per_batch = 32768;  // samples with gradients that a step aims at
-  std::int64_t max_rays_per_batch = 8192;
+  std::int64_t max_rays_per_batch = 4096;
   std::uint64_t seed = 1;
   std::int64_t checkpoint_every = 500;  // steps
   std::int64_t validate_every = 250;    // steps

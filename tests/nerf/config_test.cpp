@@ -75,10 +75,10 @@ TEST(Config, AnUnknownPresetListsThoseThereAre) {
 TEST(Config, FilesBuildOnTheirParents) {
   const test::ScratchFolder scratch;
   const auto path = scratch.path() / "config.json";
-  std::ofstream(path) << R"({"parent": "fast", "train": {"steps": 12}})";
+  std::ofstream(path) << R"({"parent": "quickstart", "train": {"steps": 12}})";
   const Config config = LoadConfig(path.string(), {});
   EXPECT_EQ(config.train.steps, 12);
-  EXPECT_EQ(config.encoding.log2_table_size, LoadConfig("fast", {}).encoding.log2_table_size);
+  EXPECT_EQ(config.encoding.log2_table_size, LoadConfig("quickstart", {}).encoding.log2_table_size);
   std::ofstream(path) << R"({"parent": ")" << path.string() << R"("})";
   EXPECT_THAT(ErrorOf(path.string(), {}), HasSubstr("own parent"));
   std::ofstream(path) << R"({"train": )";
