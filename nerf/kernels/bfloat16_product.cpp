@@ -164,9 +164,7 @@ HWY_EXPORT(PairColumnsImpl);
 HWY_EXPORT(MultiplyImpl);
 HWY_EXPORT(IsAvx512Impl);
 
-bool HasBfloat16Products() {
-  return native::HasBfloat16() && HWY_DYNAMIC_DISPATCH(IsAvx512Impl)();
-}
+bool HasBfloat16Products() { return native::HasBfloat16() && HWY_DYNAMIC_DISPATCH(IsAvx512Impl)(); }
 
 void PairColumns(const float* from, std::int64_t row, std::int64_t rows, std::int64_t columns,
                  std::uint32_t* pairs) {
