@@ -1,6 +1,7 @@
 #include "sfm/colmap_database.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,20 @@ auto WithDatabase(const fs::path& path, int flags, Work work) {
     SQLite::Database database(path.string(), flags);
     return work(database);
   } catch (const SQLite::Exception& error) {
-    throw InputError("{}: {}; remove it and start again", path.string(), error.what());
+    // The person's features and matches are worth hours: only what is damaged is to be removed.
+    switch (error.getErrorCode()) {
+      case SQLITE_FULL:
+      case SQLITE_IOERR:
+      case SQLITE_CANTOPEN:
+      case SQLITE_READONLY:
+        throw InputError("{}: {}; make room beside it and run again", path.string(), error.what());
+      case SQLITE_BUSY:
+      case SQLITE_LOCKED:
+        throw InputError("{}: {}; end the program that uses it and run again", path.string(),
+                         error.what());
+      default:
+        throw InputError("{}: {}; remove it and start again", path.string(), error.what());
+    }
   }
 }
 
@@ -76,8 +90,12 @@ void Replace(SQLite::Database& database, const std::string& table, std::int64_t 
 
 }  // namespace
 
+void RemoveDatabase(const fs::path& database) {
+  for (const char* suffix : {"", "-shm", "-wal", "-journal"}) RemoveAll(database.string() + suffix);
+}
+
 void CopyLargestFeatures(const fs::path& database, const fs::path& coarse, int features) {
-  RemoveAll(coarse);
+  RemoveDatabase(coarse);
   WithDatabase(database, SQLite::OPEN_READONLY, [&](SQLite::Database& full) {
     SQLite::Statement copy(full, "VACUUM INTO ?");
     copy.bind(1, coarse.string());

@@ -12,10 +12,14 @@ struct MatchedPair {
   int inliers = 0;            // matches that agree with one relative pose
 };
 
+// Removes a database and what SQLite keeps beside it.
+void RemoveDatabase(const std::filesystem::path& database);
+
 // Copies a database of COLMAP's as it is after feature extraction, with only the `features` largest
 // of each photograph: they are the ones most often found again (Wu 2013, "Towards Linear-Time
 // Incremental Structure from Motion", section 3), and comparing few is quick. Replaces `coarse`.
-// All functions on files throw InputError naming the file where it is not such a database.
+// All functions on files throw InputError naming the file where it is not such a database, or
+// cannot be read or written.
 void CopyLargestFeatures(const std::filesystem::path& database, const std::filesystem::path& coarse,
                          int features);
 

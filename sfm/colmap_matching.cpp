@@ -19,11 +19,16 @@ constexpr int kSequenceOverlap = 20;  // neighbours
 constexpr int kCoarseFeatures = 512;
 constexpr int kPairsEach = 12;
 constexpr int kNeighbours = 2;
+const char* const kCoarse = "coarse.db";
+const char* const kPairs = "pairs.txt";
 
 }  // namespace
 
 void ColmapSteps::Match(const std::string& matcher) {
   Step("matches", {matcher}, Database(), [&](StepLedger::State state) {
+    // What an interrupted guided match left.
+    RemoveDatabase(workspace_ / kCoarse);
+    RemoveAll(workspace_ / kPairs);
     // Pairs that are matched already are skipped by COLMAP itself.
     if (state == StepLedger::State::kChanged) {
       RunOrThrow("clean", "database_cleaner",
@@ -51,15 +56,15 @@ void ColmapSteps::MatchSequentially() {
 }
 
 void ColmapSteps::MatchGuided() {
-  const fs::path coarse = workspace_ / "coarse.db";
+  const fs::path coarse = workspace_ / kCoarse;
   CopyLargestFeatures(Database(), coarse, kCoarseFeatures);
   RunOrThrow("matches_coarse", "exhaustive_matcher",
              MatchingArguments("exhaustive_matcher", coarse));
   const auto names = ReadImageNames(Database());
   const auto pairs = SelectPairs(ReadMatchedPairs(coarse), names, kPairsEach, kNeighbours);
-  RemoveAll(coarse);
+  RemoveDatabase(coarse);
   // COLMAP is silent until it has matched all pairs of a list: short lists, to see it move.
-  const fs::path list = workspace_ / "pairs.txt";
+  const fs::path list = workspace_ / kPairs;
   const std::size_t part = std::max<std::size_t>(32, pairs.size() / 20);
   ProgressLine progress("matches", static_cast<std::int64_t>(pairs.size()));
   for (std::size_t first = 0; first < pairs.size(); first += part) {

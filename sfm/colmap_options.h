@@ -9,7 +9,7 @@ struct ColmapOptions {
   // (the 20 next, and at distances of powers of two); "guided", every pair by its largest features
   // first, and in full those pairs that look most alike; "auto", sequential for more than 100
   // photographs of one size that are numbered without large gaps, exhaustive for up to 20, else
-  // guided.
+  // guided. Where a name has a space in it, guided is exhaustive.
   std::string matcher = "auto";
   std::string camera_model = "OPENCV";  // any of CameraModelName
   int max_image_size = 1600;  // pixels, longer side; features are found in photos reduced to this

@@ -78,11 +78,19 @@ PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& worksp
     const bool sequence = one_size && r.photos > kSequenceMin && IsNumberedSequence(names);
     matcher = sequence ? "sequential" : r.photos <= kExhaustiveMost ? "exhaustive" : "guided";
   }
-  // COLMAP's lists of pairs know no names with spaces.
-  const auto has_space = [](const ColmapImage& image) {
-    return std::ranges::any_of(image.name, [](unsigned char c) { return std::isspace(c) != 0; });
+  // COLMAP's lists of pairs know no names with spaces, and take a '#' for a comment.
+  const auto unlistable = [](const ColmapImage& image) {
+    return image.name.starts_with('#') ||
+           std::ranges::any_of(image.name, [](unsigned char c) { return std::isspace(c) != 0; });
   };
-  if (matcher == "guided" && std::ranges::any_of(plan, has_space)) matcher = "exhaustive";
+  if (const auto found = std::ranges::find_if(plan, unlistable);
+      matcher == "guided" && found != plan.end()) {
+    spdlog::warn(
+        "{}: guided matching knows no names with spaces or '#' in front; all pairs are "
+        "compared, which takes longer",
+        found->name);
+    matcher = "exhaustive";
+  }
 
   ColmapSteps steps(workspace, options, r.photos);
   steps.PrepareImages(files, folder.photos, plan);
@@ -105,7 +113,7 @@ PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& worksp
     throw InputError("{}: COLMAP registered {} of {} photographs, too few to go on: {}{}; see {}",
                      photo_folder.string(), r.registered, r.photos, kAdvice,
                      matcher == "sequential" ? "; or try --matcher exhaustive" : "",
-                     steps.LogFile("mapper").string());
+                     steps.LogFile("mapper").parent_path().string());
   }
 
   PosedImages result = steps.ReadModel();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sfm/atomic_file.h"
+#include "sfm/colmap_database.h"
 #include "sfm/colmap_model.h"
 #include "sfm/input_error.h"
 #include "sfm/progress.h"
@@ -86,9 +87,7 @@ void ColmapSteps::ExtractFeatures() {
   Step("features", inputs, Database(), [&](StepLedger::State) {
     // Always from the start: COLMAP would give the photographs that an interrupted run left over
     // a camera of their own.
-    for (const char* suffix : {"", "-shm", "-wal", "-journal"}) {
-      RemoveAll(Database().string() + suffix);
-    }
+    RemoveDatabase(Database());
     Arguments arguments = {"--database_path",
                            Database().string(),
                            "--image_path",

@@ -45,7 +45,8 @@ View MakeView(const sfm::PosedImages& posed, const sfm::PosedImage& image, const
 bool HasTransparentPixel(const Image& image) {
   if (image.channels != 4) return false;
   for (std::size_t i = 3; i < image.pixels.size(); i += 4) {
-    if (image.pixels[i] < 1.0f) return true;
+    // As it is held: what rounds to opaque is opaque.
+    if (static_cast<float>(Eigen::half(image.pixels[i])) < 1.0f) return true;
   }
   return false;
 }

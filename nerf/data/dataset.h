@@ -63,7 +63,7 @@ struct Dataset {
 };
 
 // Reads the training and validation photographs on all threads, or on as many as can decode at once
-// within the memory that the options allow. A photograph that cannot be read is
+// within that much memory again, at least one. A photograph that cannot be read is
 // named in `skipped` and left out. Throws sfm::InputError when none is left to train on, when sRGB
 // and linear images are mixed, or when an image is not of its camera's size.
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,

@@ -25,15 +25,25 @@ void AppendBlock(const sfm::Camera& camera, std::int64_t block, std::vector<std:
   }
 }
 
-// Pixels that the lens does not reach borrow the ray of a neighbour; they are painted over later.
+// Pixels that the lens does not reach borrow the ray of another in their block, so that the block's
+// mean stays where it was; where it has none, of any. They are painted over later.
 void LendRays(ViewRays& tile) {
-  std::int64_t lender = std::ranges::find(tile.valid, 1) - tile.valid.begin();
   const std::int64_t count = tile.rays.Size();
-  for (std::int64_t r = 0; r < count; ++r) {
-    if (tile.valid[r]) lender = r;
-    if (tile.valid[r] || lender == count) continue;
-    std::copy_n(&tile.rays.origin[3 * lender], 3, &tile.rays.origin[3 * r]);
-    std::copy_n(&tile.rays.direction[3 * lender], 3, &tile.rays.direction[3 * r]);
+  const auto first_valid = [&](std::int64_t begin, std::int64_t end) {
+    const auto found = std::find(tile.valid.begin() + begin, tile.valid.begin() + end, 1);
+    return found == tile.valid.begin() + end ? count : found - tile.valid.begin();
+  };
+  const std::int64_t any = first_valid(0, count);
+  constexpr std::int64_t kPixels = kBlock * kBlock;
+  for (std::int64_t begin = 0; begin < count; begin += kPixels) {
+    std::int64_t lender = first_valid(begin, begin + kPixels);
+    if (lender == count) lender = any;
+    for (std::int64_t r = begin; r < begin + kPixels; ++r) {
+      if (tile.valid[r]) lender = r;
+      if (tile.valid[r] || lender == count) continue;
+      std::copy_n(&tile.rays.origin[3 * lender], 3, &tile.rays.origin[3 * r]);
+      std::copy_n(&tile.rays.direction[3 * lender], 3, &tile.rays.direction[3 * r]);
+    }
   }
 }
 

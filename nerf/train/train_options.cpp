@@ -63,6 +63,11 @@ void TrainOptions::Check() const {
     throw sfm::InputError("config: train.precision is \"{}\"; use \"float\" or \"bfloat16\"",
                           precision);
   }
+  if (precision == "bfloat16" && engine == "libtorch") {
+    throw sfm::InputError(
+        "config: train.precision \"bfloat16\" is of the fused engine; leave train.engine=libtorch "
+        "away");
+  }
   if (steps < 1) throw sfm::InputError("config: train.steps is {}; use 1 or more", steps);
   if (samples_per_batch < 1 || samples_per_batch > (1 << 24)) {
     throw sfm::InputError("config: train.samples_per_batch is {}; use 1 to {}", samples_per_batch,

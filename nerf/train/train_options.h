@@ -43,7 +43,7 @@ double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, st
 
 struct TrainOptions {
   std::string engine = "fused";  // or "libtorch", the definition that it is tested against
-  // Of the fused engine's products: "float", or "bfloat16" factors with float sums, which takes
+  // Of the field's networks in the fused engine: "float", or "bfloat16" factors with float sums, which takes
   // less time on processors with AVX512-BF16 and more on others.
   std::string precision = "float";
   std::int64_t steps = 5000;

@@ -84,8 +84,9 @@ void Run(const std::vector<std::string>& arguments) {
                  {"peak_megabytes", training.peak_megabytes},
                  {"seconds_to_validation_psnr", SecondsToReach(run / "metrics.jsonl")}};
   for (const char* quality : {"1", "0.25"}) {
-    RunProgram({program, "eval", run.string(), "--quality", quality, "--json"}, output);
-    const json eval = ReadJson(output);
+    RunProgram({program, "eval", run.string(), "--quality", quality, "--json"},
+               run.string() + ".eval.json");
+    const json eval = ReadJson(run.string() + ".eval.json");
     result["training_seconds"] = eval["training_seconds"];
     result["step"] = eval["step"];
     result["quality"][quality] = {{"psnr", eval["psnr"]},

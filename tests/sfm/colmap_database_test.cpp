@@ -57,6 +57,18 @@ TEST(CopyLargestFeatures, ADamagedDatabaseIsNamedWithTheMend) {
               HasSubstr("do not fit"));
 }
 
+// Features and matches are hours of work; whoever is told to remove them will.
+TEST(CopyLargestFeatures, ALockedDatabaseIsNotToBeRemoved) {
+  const ScratchFolder folder;
+  const auto full = folder.path() / "full.db";
+  WriteColmapDatabase(full, {{"a.jpg", {1, 5, 2}}});
+  SQLite::Database other(full.string(), SQLite::OPEN_READWRITE);
+  other.exec("BEGIN EXCLUSIVE");
+  EXPECT_THAT(InputErrorOf([&] { CopyLargestFeatures(full, folder.path() / "coarse.db", 3); }),
+              testing::AllOf(HasSubstr("locked"), HasSubstr("run again"),
+                             testing::Not(HasSubstr("remove"))));
+}
+
 TEST(ReadMatchedPairs, NamesThePhotographs) {
   const ScratchFolder folder;
   const auto path = folder.path() / "d.db";

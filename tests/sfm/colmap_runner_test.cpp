@@ -141,7 +141,7 @@ TEST_F(ColmapRunner, FailingStepIsNamedWithReasonAndLogAndRunsAgainNextTime) {
 TEST_F(ColmapRunner, FewRegisteredAreTriedAgainThenRefusedWithAdvice) {
   options_.matcher = "exhaustive";
   WritePhotos(50);
-  EXPECT_THAT(Error(), AllOf(HasSubstr("0 of 50"), HasSubstr("overlap"), HasSubstr("mapper.log")));
+  EXPECT_THAT(Error(), AllOf(HasSubstr("0 of 50"), HasSubstr("overlap"), HasSubstr("colmap/log")));
   EXPECT_THAT(fake_.Calls().back(), HasSubstr("--Mapper.init_min_num_inliers 50"));
   fs::remove_all(Workspace());
   fake_.Set("models", "0 3\n");
@@ -175,7 +175,7 @@ TEST_F(ColmapRunner, SecondAttemptCountsOnlyWhereItIsBetter) {
   fake_.Set("models", "0 4\n");
   fake_.Set("models_relaxed", "0 1\n1 9\n");
   EXPECT_EQ(Run().images.size(), 9u);
-  EXPECT_FALSE(fs::exists(Workspace() / "sparse_relaxed"));
+  EXPECT_FALSE(fs::exists(Workspace() / "sparse_again"));
   fs::remove_all(Workspace());
   fake_.Set("models_relaxed", "0 3\n");
   EXPECT_EQ(Run().images.size(), 4u);
@@ -342,6 +342,7 @@ TEST_F(GuidedMatching, ListsHaveNoRoomForNamesWithSpaces) {
   fake_.Set("models", "0 30\n");
   Run();
   EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "exhaustive_matcher", "mapper"));
+  EXPECT_THAT(log_.Text(), HasSubstr("p 007.png: guided matching"));
 }
 
 TEST(NumberedSequence, IsOneTextAroundNumbersOfOneWidth) {

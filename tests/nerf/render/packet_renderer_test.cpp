@@ -218,6 +218,24 @@ TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {
   }
 }
 
+TEST(RenderView, PixelsBesideTheLensBorrowTheRayOfANeighbour) {
+  sfm::Camera camera;
+  camera.model = sfm::CameraModel::kOpenCV;
+  camera.width = camera.height = 200;
+  camera.params = {100, 100, 100, 100, -0.3, 0, 0, 0};  // nothing is seen 71 pixels off the middle
+  DirectionRenderer renderer;
+  const RenderedView view = RenderView(renderer, camera, Eigen::Isometry3d::Identity(),
+                                       Eigen::Vector3f(1, 0, 0), ColorEncoding::kLinear);
+  EXPECT_EQ(view.opacity.pixels[0], 0);
+  EXPECT_EQ(view.rgb.pixels[0], 1);
+  EXPECT_EQ(view.opacity.pixels[100 * 200 + 100], 1);
+  for (std::size_t r = 0; r < renderer.directions.size() / 3; ++r) {
+    const Eigen::Vector3f d(&renderer.directions[3 * r]);
+    const Eigen::Vector3f first(&renderer.directions[3 * (r / 16 * 16)]);
+    ASSERT_LT((d - first).norm(), 0.3f);
+  }
+}
+
 TEST(RenderPreview, ShowsTheWholePictureFromFewRays) {
   sfm::Camera camera;
   camera.width = 21;
