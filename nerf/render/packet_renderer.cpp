@@ -15,6 +15,9 @@ namespace {
 constexpr std::int64_t kTileRays = 128;
 constexpr std::int64_t kSlab = 4;
 
+// Light that gets through where a packet's samples missed what its ray meets.
+constexpr double kMissed = 0.1;
+
 ProposalOptions WithSamples(ProposalOptions options, int samples) {
   options.samples = samples;
   return options;
@@ -88,6 +91,19 @@ void MiddleRays(const RayBatch& rays, std::int64_t first, std::int64_t last, std
 
 }  // namespace
 
+// Sets ray k of the tile on its way through the given intervals.
+void PacketRenderer::PackRay(const RayBatch& rays, std::int64_t r, std::span<const float> edges,
+                             std::int64_t k, Tile& tile) const {
+  const std::int64_t each = quality_.samples;
+  RaySamples& s = tile.samples;
+  tile.rays[k] = {};
+  tile.rays[k].next = k * each;
+  tile.rays[k].end = (k + 1) * each;
+  PackIntervalsOfRay(rays, r, edges, std::span(s.position).subspan(3 * k * each, 3 * each),
+                     std::span(s.t).subspan(k * each, each),
+                     std::span(s.dt).subspan(k * each, each));
+}
+
 void PacketRenderer::PlaceSamples(const RayBatch& rays, std::int64_t first, std::int64_t last,
                                   Tile& tile) const {
   const std::int64_t count = last - first;
@@ -115,13 +131,35 @@ void PacketRenderer::PlaceSamples(const RayBatch& rays, std::int64_t first, std:
   s.t.resize(count * each);
   s.dt.resize(count * each);
   for (std::int64_t k = 0; k < count; ++k) {
-    tile.rays[k].next = k * each;
-    tile.rays[k].end = (k + 1) * each;
-    PackIntervalsOfRay(
-        rays, first + k,
-        std::span(tile.proposal.edges).subspan(k / quality_.packet * (each + 1), each + 1),
-        std::span(s.position).subspan(3 * k * each, 3 * each),
-        std::span(s.t).subspan(k * each, each), std::span(s.dt).subspan(k * each, each));
+    PackRay(rays, first + k,
+            std::span(tile.proposal.edges).subspan(k / quality_.packet * (each + 1), each + 1), k,
+            tile);
+  }
+}
+
+// Rays beside an edge, for which the middle of their packet looked in the wrong place: much light
+// still gets through. They are placed anew, each by itself.
+void PacketRenderer::PlaceMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const {
+  if (!proposal_ || quality_.packet == 1) return;
+  for (std::size_t k = 0; k < tile.rays.size(); ++k) {
+    const RayState& ray = tile.rays[k];
+    if (ray.next == ray.end && ray.Transmittance() > kMissed) {
+      tile.alive.push_back(static_cast<std::int64_t>(k));
+    }
+  }
+  const std::int64_t each = quality_.samples;
+  tile.packets.Resize(static_cast<std::int64_t>(tile.alive.size()));
+  for (std::int64_t m = 0; m < tile.packets.Size(); ++m) {
+    const std::int64_t r = first + tile.alive[m];
+    std::copy_n(&rays.origin[3 * r], 3, &tile.packets.origin[3 * m]);
+    std::copy_n(&rays.direction[3 * r], 3, &tile.packets.direction[3 * m]);
+    tile.packets.jitter[m] = rays.jitter[r];
+  }
+  proposal_->Cut(tile.packets, 0, tile.packets.Size(), tile.proposal);
+  for (std::int64_t m = 0; m < tile.packets.Size(); ++m) {
+    const std::int64_t k = tile.alive[m];
+    PackRay(rays, first + k, std::span(tile.proposal.edges).subspan(m * (each + 1), each + 1), k,
+            tile);
   }
 }
 
@@ -230,6 +268,8 @@ RenderOutput PacketRenderer::Render(const RayBatch& rays) {
     for (std::int64_t k = 0; k < last - first; ++k) {
       if (tile.rays[k].next < tile.rays[k].end) tile.alive.push_back(k);
     }
+    while (!tile.alive.empty()) Advance(rays, first, tile);
+    PlaceMissed(rays, first, tile);
     while (!tile.alive.empty()) Advance(rays, first, tile);
     ShadeFaint(rays, first, tile);
 

@@ -31,6 +31,9 @@ class PacketRenderer : public RayRenderer {
  private:
   struct Tile;
   void PlaceSamples(const RayBatch& rays, std::int64_t first, std::int64_t last, Tile& tile) const;
+  void PackRay(const RayBatch& rays, std::int64_t r, std::span<const float> edges, std::int64_t k,
+               Tile& tile) const;
+  void PlaceMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Shade(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const;

@@ -128,6 +128,25 @@ TEST(PacketRenderer, NeighboursThatAreTheSameRayLoseNothingByAPacket) {
   }
 }
 
+// A packet's middle may look past what one of its rays meets: then that ray looks for itself.
+TEST(PacketRenderer, RaysThatTheirPacketMissedArePlacedAlone) {
+  TwoEngines e;
+  e.Make(64, /*with_proposal=*/true);  // rays in all directions: no neighbours at all
+  RenderQuality quality = Exact(e);
+  const RenderOutput alone = RenderWith(e, quality);
+  quality.packet = 16;
+  const RenderOutput together = RenderWith(e, quality);
+  int missed = 0;
+  for (std::size_t r = 0; r < alone.opacity.size(); ++r) {
+    if (together.opacity[r] >= 0.9f) continue;
+    ++missed;
+    EXPECT_NEAR(together.opacity[r], alone.opacity[r], 1e-5);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(together.rgb[3 * r + c], alone.rgb[3 * r + c], 1e-5);
+  }
+  EXPECT_GT(missed, 0);
+  EXPECT_GT(together.samples, alone.samples);  // they were looked at twice
+}
+
 TEST(PacketRenderer, ABatchNeedNotBeWholePackets) {
   TwoEngines e;
   e.Make(21, /*with_proposal=*/true);
