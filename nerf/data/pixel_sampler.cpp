@@ -34,16 +34,34 @@ bool SetRay(RayBatch& rays, std::int64_t r, const sfm::Camera& camera,
 
 }  // namespace
 
-PixelSampler::PixelSampler(const std::vector<View>& views) : views_(views), first_pixel_{0} {
+PixelSampler::PixelSampler(const std::vector<View>& views, double error_driven_share)
+    : views_(views), error_driven_share_(error_driven_share), first_pixel_{0} {
   for (const View& view : views) {
     first_pixel_.push_back(first_pixel_.back() + view.Held());
   }
+  if (error_driven_share > 0) errors_.emplace(views);
+}
+
+PixelSampler::Drawn PixelSampler::Draw(std::uint64_t bits) const {
+  constexpr std::uint64_t kChoice = 0x63686f6963655f5full, kPlace = 0x706c6163655f5f5full;
+  if (errors_ &&
+      static_cast<double>(Mix64(bits ^ kChoice) >> 11) * 0x1p-53 < error_driven_share_) {
+    const ErrorMap::Pixel pixel = errors_->Draw(Mix64(bits ^ kPlace));
+    const View& view = views_[pixel.view];
+    const std::int64_t all = std::int64_t{view.camera.width} * view.camera.height;
+    return {pixel.view, pixel.index * view.Held() / all};  // or the nearest that is held
+  }
+  const auto global =
+      static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(first_pixel_.back()));
+  const auto after = std::ranges::upper_bound(first_pixel_, global);
+  return {static_cast<std::size_t>(after - first_pixel_.begin() - 1), global - *(after - 1)};
 }
 
 TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uint64_t step) const {
   TargetBatch batch;
   batch.rays.Resize(rays);
   batch.rgb.resize(3 * rays);
+  if (errors_) batch.cell.resize(rays);
   // A pixel that its lens does not reach is drawn again, so often that only a broken lens fails.
   constexpr std::uint64_t kMostDraws = 256;
   std::atomic<bool> failed = false;
@@ -56,14 +74,13 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
         }
         const std::uint64_t bits =
             RandomBits(seed, StreamOfStep(kPixelStream, step), kMostDraws * r + draw);
-        const auto global =
-            static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(first_pixel_.back()));
-        const auto after = std::ranges::upper_bound(first_pixel_, global);
-        const View& view = views_[after - first_pixel_.begin() - 1];
-        const std::int64_t held = global - *(after - 1), pixel = view.PixelOf(held);
+        const auto [v, held] = Draw(bits);
+        const View& view = views_[v];
+        const std::int64_t pixel = view.PixelOf(held);
         const Eigen::Vector2d centre(static_cast<double>(pixel % view.camera.width) + 0.5,
                                      static_cast<double>(pixel / view.camera.width) + 0.5);
         if (!SetRay(batch.rays, r, view.camera, view.normalized_from_camera, centre)) continue;
+        if (errors_) batch.cell[r] = errors_->CellOf({v, pixel});
         const Eigen::half* rgba = &view.rgba[4 * held];
         const auto alpha = static_cast<float>(rgba[3]);
         for (int c = 0; c < 3; ++c) {

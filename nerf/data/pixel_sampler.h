@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "nerf/data/dataset.h"
+#include "nerf/data/error_map.h"
 #include "nerf/sampling/rays.h"
 
 namespace nerf {
@@ -13,21 +15,35 @@ namespace nerf {
 struct TargetBatch {
   RayBatch rays;
   std::vector<float> rgb;  // [R,3] composited on the ray's background where the photo has alpha
+  std::vector<std::int64_t> cell;  // [R] of the error map; empty where there is none
 };
 
-// Draws pixels of the training views, each equally likely, as rays. What is drawn is a function of
-// seed and step alone, whatever the number of threads. `views` must outlive the sampler.
+// Draws pixels of the training views as rays: each equally likely, but for a share of them that
+// stands where the field is still wrong. What is drawn is a function of seed, step and the error
+// map, whatever the number of threads. `views` must outlive the sampler.
 class PixelSampler {
  public:
-  explicit PixelSampler(const std::vector<View>& views);
+  explicit PixelSampler(const std::vector<View>& views, double error_driven_share = 0);
 
   // The background of each ray is a random colour: it tells matter from a lucky backdrop, in the
   // prediction as in the transparent pixels of a photograph.
   // Throws sfm::InputError when a lens lets no pixel through.
   TargetBatch Sample(std::int64_t rays, std::uint64_t seed, std::uint64_t step) const;
 
+  // Null where all pixels are equally likely.
+  ErrorMap* Errors() { return errors_ ? &*errors_ : nullptr; }
+  const ErrorMap* Errors() const { return errors_ ? &*errors_ : nullptr; }
+
  private:
+  struct Drawn {
+    std::size_t view = 0;
+    std::int64_t held = 0;  // which of the view's held pixels
+  };
+  Drawn Draw(std::uint64_t bits) const;
+
   const std::vector<View>& views_;
+  double error_driven_share_;
+  std::optional<ErrorMap> errors_;
   std::vector<std::int64_t> first_pixel_;  // [views+1] running count
 };
 

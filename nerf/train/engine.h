@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "nerf/data/pixel_sampler.h"
 #include "nerf/kernels/mlp.h"
@@ -21,6 +22,7 @@ struct StepResult {
   double squared_error = 0;  // mean over rays and channels, for PSNR
   std::int64_t marched = 0;  // samples in occupied cells
   std::int64_t shaded = 0;   // samples of them that light reaches, on which gradients were taken
+  std::vector<float> ray_error;  // [R] squared error of each ray, mean over channels
 };
 
 // What an engine works on. Where there is a proposal it places the samples, else the grid does.

@@ -169,19 +169,25 @@ ChannelLoss LossOf(double error, const LossOptions& options) {
 }  // namespace
 
 // From the pixels of a tile back to the field.
-void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker& worker) const {
+void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
+                           std::span<float> ray_error) const {
   Tile& tile = worker.tile;
   const std::int64_t count = tile.Rays(), size = tile.samples.Size();
   const double channels = 3.0 * static_cast<double>(batch.rays.Size());
   worker.dL_drgb.resize(3 * count);
   double loss = 0;
-  for (std::int64_t i = 0; i < 3 * count; ++i) {
-    const double error =
-        static_cast<double>(tile.rgb[i]) - static_cast<double>(batch.rgb[3 * first + i]);
-    const ChannelLoss of_channel = LossOf(error, parts_.loss);
-    loss += of_channel.value;
-    worker.squared_error += error * error;
-    worker.dL_drgb[i] = static_cast<float>(of_channel.derivative / channels);
+  for (std::int64_t r = 0; r < count; ++r) {
+    double squared = 0;
+    for (std::int64_t i = 3 * r; i < 3 * r + 3; ++i) {
+      const double error =
+          static_cast<double>(tile.rgb[i]) - static_cast<double>(batch.rgb[3 * first + i]);
+      const ChannelLoss of_channel = LossOf(error, parts_.loss);
+      loss += of_channel.value;
+      squared += error * error;
+      worker.dL_drgb[i] = static_cast<float>(of_channel.derivative / channels);
+    }
+    worker.squared_error += squared;
+    ray_error[first + r] = static_cast<float>(squared / 3);
   }
   if (!std::isfinite(loss)) {
     throw NonFiniteError("the loss is not finite: " +
@@ -250,6 +256,8 @@ StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
   // A fixed share of the rays for each thread, so that sums repeat bit for bit.
   const auto threads = static_cast<std::int64_t>(NumThreads());
   workers_.resize(threads);
+  StepResult result;
+  result.ray_error.resize(count);
   ParallelFor(threads, 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t k = begin; k < end; ++k) {
       Worker& worker = workers_[k];
@@ -260,13 +268,12 @@ StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
       const std::int64_t last = count * (k + 1) / threads;
       for (std::int64_t first = count * k / threads; first < last;) {
         const std::int64_t next = Forward(batch.rays, first, last, worker.tile);
-        Backward(batch, first, worker);
+        Backward(batch, first, worker, result.ray_error);
         first = next;
       }
     }
   });
 
-  StepResult result;
   std::vector<const FieldGradients*> of_field;
   std::vector<const DensityGradients*> of_proposal;
   for (const Worker& worker : workers_) {

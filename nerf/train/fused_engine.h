@@ -30,7 +30,8 @@ class FusedEngine : public Engine {
   void KeepVisible(Tile& tile) const;
   std::int64_t Forward(const RayBatch& rays, std::int64_t first, std::int64_t last,
                        Tile& tile) const;
-  void Backward(const TargetBatch& batch, std::int64_t first, Worker& worker) const;
+  void Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
+                std::span<float> ray_error) const;
 
   EngineParts parts_;
   TileField field_;

@@ -154,6 +154,10 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   }
   // A batch whose rays meet no occupied cell has no parameters to blame.
   if (total.requires_grad()) total.backward();
+  const torch::Tensor of_ray =
+      (out.pixels.rgb.detach() - target).square().mean(1).to(torch::kFloat).contiguous();
+  const auto ray_error = Span<const float>(of_ray);
+  result.ray_error.assign(ray_error.begin(), ray_error.end());
   result.squared_error = torch::mse_loss(out.pixels.rgb.detach(), target).item<double>();
   result.marched = out.marched;
   result.shaded = out.samples.Size();

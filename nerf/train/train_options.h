@@ -43,12 +43,14 @@ double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, st
 
 struct TrainOptions {
   std::string engine = "fused";  // or "libtorch", the definition that it is tested against
-  // Of the field's networks in the fused engine: "float", or "bfloat16" factors with float sums, which takes
-  // less time on processors with AVX512-BF16 and more on others.
+  // Of the field's networks in the fused engine: "float", or "bfloat16" factors with float sums,
+  // which takes less time on processors with AVX512-BF16 and more on others.
   std::string precision = "float";
   std::int64_t steps = 5000;
   std::int64_t samples_per_batch = 32768;  // samples with gradients that a step aims at
   std::int64_t max_rays_per_batch = 4096;
+  // Of a batch, drawn where the field is still wrong (ErrorMap); the others anywhere.
+  double error_driven_share = 0.5;
   std::uint64_t seed = 1;
   std::int64_t checkpoint_every = 500;  // steps
   std::int64_t validate_every = 250;    // steps

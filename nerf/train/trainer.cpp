@@ -9,6 +9,7 @@
 #include "nerf/data/pixel_sampler.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
+#include "nerf/field/tensor_span.h"
 #include "nerf/parallel.h"
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/train/checkpoint.h"
@@ -30,6 +31,9 @@ using Clock = std::chrono::steady_clock;
 double SecondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
+
+// What checkpoints call the state of the error map.
+constexpr char kErrorsName[] = "sampler.errors";
 
 double Psnr(double mean_squared_error) { return -10.0 * std::log10(mean_squared_error); }
 
@@ -69,7 +73,7 @@ struct Trainer::State {
       : model(std::move(model_in)),
         data(data_in),
         run(std::move(run_in)),
-        sampler(data.train),
+        sampler(data.train, Options().error_driven_share),
         optimizer(NamedParameters(model), model.config.optimizer),
         rays_per_batch(std::clamp<std::int64_t>(Options().samples_per_batch / 128, 1,
                                                 Options().max_rays_per_batch)) {
@@ -117,6 +121,7 @@ StepResult Trainer::State::Step() {
     }
     const TargetBatch batch = sampler.Sample(rays_per_batch, options.seed, step);
     const StepResult result = model.engine->AccumulateGradients(batch);
+    if (ErrorMap* errors = sampler.Errors()) errors->Learn(batch.cell, result.ray_error);
     optimizer.SetLearningRateFactor(LearningRateFactor(model.config.schedule, step, options.steps));
     optimizer.step();
     return result;
@@ -168,6 +173,11 @@ void Trainer::State::Save() const {
   Checkpoint checkpoint;
   AddModel(model, checkpoint);
   optimizer.AddTo(checkpoint.tensors);
+  if (const ErrorMap* errors = sampler.Errors()) {
+    const std::span<const float> cells = errors->Errors();
+    checkpoint.tensors[kErrorsName] =
+        torch::tensor(at::ArrayRef<float>(cells.data(), cells.size()));
+  }
   checkpoint.meta["step"] = step;
   checkpoint.meta["rays_per_batch"] = rays_per_batch;
   checkpoint.meta["training_seconds"] = training_seconds;
@@ -187,6 +197,14 @@ Trainer::Trainer(const Checkpoint& checkpoint, const Dataset& data,
     : state_(std::make_unique<State>(ModelFromCheckpoint(checkpoint), data, run)) {
   try {
     state_->optimizer.LoadFrom(checkpoint.tensors);
+    if (ErrorMap* errors = state_->sampler.Errors()) {
+      const auto found = checkpoint.tensors.find(kErrorsName);
+      if (found == checkpoint.tensors.end()) {
+        throw sfm::InputError("{}: holds no {}: it is of an earlier version; train again",
+                              CheckpointPath(run).string(), kErrorsName);
+      }
+      errors->SetErrors(Span<const float>(found->second));
+    }
     state_->step = checkpoint.meta.at("step");
     state_->rays_per_batch = checkpoint.meta.at("rays_per_batch");
     state_->training_seconds = checkpoint.meta.at("training_seconds");

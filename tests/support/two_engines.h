@@ -117,6 +117,14 @@ struct TwoEngines {
     const auto gradients_b = Gradients();
     EXPECT_NEAR(step_a.loss, step_b.loss, 1e-5 * step_a.loss);
     EXPECT_NEAR(step_a.squared_error, step_b.squared_error, 1e-5 * step_a.squared_error);
+    ASSERT_EQ(step_a.ray_error.size(), step_b.ray_error.size());
+    double sum = 0;
+    for (std::size_t r = 0; r < step_a.ray_error.size(); ++r) {
+      EXPECT_NEAR(step_a.ray_error[r], step_b.ray_error[r], 1e-5 * (1 + step_a.ray_error[r]));
+      sum += static_cast<double>(step_b.ray_error[r]);
+    }
+    EXPECT_NEAR(sum / static_cast<double>(step_b.ray_error.size()), step_b.squared_error,
+                1e-5 * step_b.squared_error);
     EXPECT_EQ(step_a.marched, step_b.marched);
     EXPECT_EQ(step_a.shaded, step_b.shaded);
     EXPECT_GT(step_a.shaded, 0);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <set>
 
 #include "nerf/data/camera.h"
 #include "nerf/parallel.h"
@@ -59,6 +61,44 @@ TEST(PixelSampler, DrawsDependOnSeedAndStepAlone) {
   EXPECT_EQ(one.rays.jitter, three.rays.jitter);
   EXPECT_NE(one.rgb, sampler.Sample(500, 7, 4).rgb);
   EXPECT_NE(one.rgb, sampler.Sample(500, 8, 3).rgb);
+}
+
+TEST(PixelSampler, AShareOfTheRaysGoesWhereTheFieldIsWrong) {
+  const std::vector<View> views = Views();
+  PixelSampler sampler(views, 0.5);
+  ASSERT_NE(sampler.Errors(), nullptr);
+  sampler.Errors()->SetErrors(std::vector<float>{1.0f, 0.0f});  // the first view, a third of pixels
+  const TargetBatch batch = sampler.Sample(6000, 1, 0);
+  const auto of_first = std::ranges::count(batch.cell, 0);
+  EXPECT_NEAR(of_first, 4000, 200);  // its share of one half, all of the other
+  for (std::int64_t r = 0; r < batch.rays.Size(); ++r) {
+    ASSERT_EQ(batch.cell[r], static_cast<std::int64_t>(batch.rgb[3 * r]));  // red is the view
+  }
+  EXPECT_EQ(PixelSampler(views).Errors(), nullptr);
+  EXPECT_TRUE(PixelSampler(views).Sample(10, 1, 0).cell.empty());
+}
+
+TEST(PixelSampler, WhereAShareOfThePixelsIsHeldTheNearestIsTaken) {
+  std::vector<View> views = Views();
+  for (View& view : views) {
+    const auto held = static_cast<std::int64_t>(view.rgba.size() / 12);  // a third of them
+    std::vector<Eigen::half> all = view.rgba;
+    view.rgba.resize(4 * held);
+    for (std::int64_t k = 0; k < held; ++k) {
+      std::copy_n(&all[4 * view.PixelOf(k)], 4, &view.rgba[4 * k]);
+    }
+  }
+  const TargetBatch batch = PixelSampler(views, 1.0).Sample(3000, 1, 0);
+  std::set<std::array<int, 3>> seen;
+  for (std::int64_t r = 0; r < batch.rays.Size(); ++r) {
+    const int v = static_cast<int>(batch.rgb[3 * r]);
+    const auto x = static_cast<int>(batch.rgb[3 * r + 1] * 16),
+               y = static_cast<int>(batch.rgb[3 * r + 2] * 16);
+    seen.insert({v, x, y});
+    const auto d = DirectionFromPixel(views[v].camera, {x + 0.5, y + 0.5});
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(batch.rays.direction[3 * r + c], (*d)[c], 1e-6);
+  }
+  EXPECT_EQ(seen.size(), 15u);  // all that are held: 16 / 3 and 32 / 3
 }
 
 TEST(PixelSampler, TransparentPixelsShowTheRaysBackground) {
