@@ -2,8 +2,11 @@
 
 #include <zlib.h>
 
+#include <array>
+#include <bit>
 #include <cstring>
-#include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
@@ -11,92 +14,139 @@
 namespace nerf {
 namespace {
 
-struct Header {
-  char magic[8] = {'N', 'E', 'R', 'F', 'C', 'K', 'P', 'T'};
-  std::uint32_t version = kCheckpointVersion;
-  std::uint32_t crc = 0;
-  std::uint64_t size = 0;
-};
-static_assert(sizeof(Header) == 24);
+static_assert(std::endian::native == std::endian::little, "files are little endian");
 
-constexpr char kMetaKey[] = "meta";
-constexpr char kTensorPrefix[] = "tensor.";
+using json = nlohmann::ordered_json;
+
+constexpr char kMetadataKey[] = "__metadata__", kCrcKey[] = "crc32";
+constexpr std::size_t kCrcSize = 4;
+
+constexpr std::array<std::pair<const char*, torch::Dtype>, 5> kTypes = {{{"F32", torch::kFloat},
+                                                                         {"F64", torch::kDouble},
+                                                                         {"I32", torch::kInt},
+                                                                         {"I64", torch::kLong},
+                                                                         {"U8", torch::kByte}}};
+
+const char* TypeName(torch::Dtype dtype) {
+  for (const auto& [name, type] : kTypes) {
+    if (type == dtype) return name;
+  }
+  TORCH_CHECK(false, "WriteCheckpoint: tensors of type ", dtype, " have no place in it");
+}
 
 std::uint32_t Crc32(std::string_view bytes) {
-  uLong crc = crc32_z(0, nullptr, 0);
-  crc = crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   return static_cast<std::uint32_t>(crc);
 }
 
-// Archive keys must not hold dots, which separate sub-modules.
-std::string KeyOf(const std::string& name) {
-  std::string key = kTensorPrefix + name;
-  for (char& c : key) {
-    if (c == '.') c = '/';
+template <class T>
+void Append(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <class T>
+T ValueAt(std::string_view bytes, std::size_t at) {
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+// A tensor as the header describes it. Throws json::exception, or std::runtime_error where shape,
+// type and place do not fit each other or the data.
+torch::Tensor TensorFrom(const json& entry, std::string_view data) {
+  const auto& offsets = entry.at("data_offsets");
+  const std::uint64_t begin = offsets.at(0), end = offsets.at(1);
+  if (begin > end || end > data.size()) throw std::runtime_error("data_offsets");
+  const std::string type = entry.at("dtype");
+  for (const auto& [name, dtype] : kTypes) {
+    if (type != name) continue;
+    std::vector<std::int64_t> shape;
+    std::uint64_t bytes = torch::elementSize(dtype);
+    for (const std::uint64_t size : entry.at("shape")) {
+      shape.push_back(static_cast<std::int64_t>(size));
+      // No product that is larger than the file can wrap around into one that fits.
+      if (size > data.size()) throw std::runtime_error("shape");
+      bytes *= size;
+      if (bytes > data.size()) throw std::runtime_error("shape");
+    }
+    if (bytes != end - begin) throw std::runtime_error("shape");
+    torch::Tensor tensor = torch::empty(shape, dtype);
+    std::memcpy(tensor.data_ptr(), data.data() + begin, bytes);
+    return tensor;
   }
-  return key;
+  throw std::runtime_error("dtype");
+}
+
+[[noreturn]] void RefuseVersion(const std::filesystem::path& path, const std::string& version) {
+  throw sfm::InputError(
+      "{}: is a checkpoint of version {}, this program reads version {}; use the program that "
+      "wrote it, or train again",
+      path.string(), version, kCheckpointVersion);
 }
 
 }  // namespace
 
 void WriteCheckpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  torch::serialize::OutputArchive archive;
-  nlohmann::json meta = checkpoint.meta;
-  meta["tensors"] = nlohmann::json::array();
+  json header;
+  header[kMetadataKey] = {{"format", "nerf-cpu"},
+                          {"version", std::to_string(kCheckpointVersion)},
+                          {"meta", checkpoint.meta.dump()}};
+  std::uint64_t end = 0;
+  const auto describe = [&](const std::string& name, const char* type, at::IntArrayRef shape,
+                            std::uint64_t size) {
+    header[name] = {{"dtype", type}, {"shape", shape.vec()}, {"data_offsets", {end, end + size}}};
+    end += size;
+  };
   for (const auto& [name, tensor] : checkpoint.tensors) {
-    archive.write(KeyOf(name), tensor.detach(), /*is_buffer=*/true);
-    meta["tensors"].push_back(name);
+    describe(name, TypeName(tensor.scalar_type()), tensor.sizes(), tensor.nbytes());
   }
-  archive.write(kMetaKey, c10::IValue(meta.dump()));
-  std::ostringstream stream;
-  archive.save_to(stream);
-  const std::string payload = std::move(stream).str();
+  describe(kCrcKey, "U8", {kCrcSize}, kCrcSize);
 
-  Header header;
-  header.crc = Crc32(payload);
-  header.size = payload.size();
-  std::string bytes(sizeof(Header) + payload.size(), '\0');
-  std::memcpy(bytes.data(), &header, sizeof(Header));
-  std::memcpy(bytes.data() + sizeof(Header), payload.data(), payload.size());
+  std::string text = header.dump();
+  text.resize((text.size() + 7) / 8 * 8, ' ');  // tensors begin at a multiple of eight bytes
+  std::string bytes;
+  bytes.reserve(8 + text.size() + end);
+  Append<std::uint64_t>(bytes, text.size());
+  bytes += text;
+  for (const auto& [name, tensor] : checkpoint.tensors) {
+    const torch::Tensor plain = tensor.detach().contiguous();
+    bytes.append(static_cast<const char*>(plain.data_ptr()), plain.nbytes());
+  }
+  Append(bytes, Crc32(bytes));
   sfm::WriteFileAtomically(path, bytes);
 }
 
 Checkpoint ReadCheckpoint(const std::filesystem::path& path) {
-  std::string bytes = sfm::ReadWholeFile(path);
-  Header header;
-  const Header expected;
-  if (bytes.size() < sizeof(Header) || std::memcmp(bytes.data(), expected.magic, 8) != 0) {
+  const std::string bytes = sfm::ReadWholeFile(path);
+  const std::string_view all = bytes;
+  if (all.starts_with("NERFCKPT")) RefuseVersion(path, "2 or older");
+  const bool whole = all.size() >= 8 + kCrcSize &&
+                     ValueAt<std::uint64_t>(all, 0) <= all.size() - 8 - kCrcSize &&
+                     ValueAt<std::uint32_t>(all, all.size() - kCrcSize) ==
+                         Crc32(all.substr(0, all.size() - kCrcSize));
+  if (!whole) {
     throw sfm::InputError(
-        "{}: is not a checkpoint of this program; train again, or name a run folder",
-        path.string());
+        "{}: is cut short, damaged, or no checkpoint ({} bytes); train again, or name a run folder",
+        path.string(), all.size());
   }
-  std::memcpy(&header, bytes.data(), sizeof(Header));
-  if (header.version != kCheckpointVersion) {
-    throw sfm::InputError(
-        "{}: is a checkpoint of version {}, this program reads version {}; use the program that "
-        "wrote it, or train again",
-        path.string(), header.version, kCheckpointVersion);
-  }
-  bytes.erase(0, sizeof(Header));
-  if (bytes.size() != header.size || Crc32(bytes) != header.crc) {
-    throw sfm::InputError(
-        "{}: is cut short or damaged ({} of {} bytes); train again from the start", path.string(),
-        bytes.size(), header.size);
-  }
+  const std::uint64_t header_size = ValueAt<std::uint64_t>(all, 0);
+  const std::string_view data = all.substr(8 + header_size);
   try {
-    std::istringstream stream(std::move(bytes));
-    torch::serialize::InputArchive archive;
-    archive.load_from(stream);
+    const json header = json::parse(all.substr(8, header_size));
+    const json& metadata = header.at(kMetadataKey);
+    const std::string version = metadata.at("version");
+    if (version != std::to_string(kCheckpointVersion)) RefuseVersion(path, version);
     Checkpoint checkpoint;
-    c10::IValue meta;
-    archive.read(kMetaKey, meta);
-    checkpoint.meta = nlohmann::json::parse(meta.toStringRef());
-    for (const std::string name : checkpoint.meta.at("tensors")) {
-      archive.read(KeyOf(name), checkpoint.tensors[name], /*is_buffer=*/true);
+    checkpoint.meta = nlohmann::json::parse(metadata.at("meta").get<std::string>());
+    for (const auto& [name, entry] : header.items()) {
+      if (name == kMetadataKey || name == kCrcKey) continue;
+      checkpoint.tensors[name] = TensorFrom(entry, data);
     }
     return checkpoint;
+  } catch (const sfm::InputError&) {
+    throw;
   } catch (const std::exception&) {
-    // The sum was right, so this program wrote it, but not this version of it or of LibTorch.
+    // The sum was right, so somebody meant it so, but not a version of this program.
     throw sfm::InputError("{}: cannot be understood; use the program that wrote it, or train again",
                           path.string());
   }

@@ -12,12 +12,15 @@ namespace nerf {
 // Everything a run needs to go on, or to render: numbers and texts in `meta`, tensors by name.
 struct Checkpoint {
   nlohmann::json meta;
-  std::map<std::string, torch::Tensor> tensors;
+  std::map<std::string, torch::Tensor> tensors;  // float, double, int32, int64 or uint8
 };
 
-// The file: 8 bytes "NERFCKPT", uint32 version, uint32 CRC-32 of the payload, uint64 size of the
-// payload, then the payload, a LibTorch archive (a zip that torch::load reads too). Little endian.
-inline constexpr std::uint32_t kCheckpointVersion = 2;
+// The file is of the safetensors format, which Python's safetensors reads too: uint64 size of the
+// header, the header as JSON, then the tensors, little endian. Its metadata hold the format's
+// version and `meta`; the last tensor, "crc32", is the CRC-32 of all bytes before it. A LibTorch
+// archive would do as well, but its pickles may hold programs: a run from a stranger is only data.
+// Source: huggingface/safetensors, README "Format".
+inline constexpr int kCheckpointVersion = 3;
 
 // Written atomically: after a kill or on a full disk the file that stood there before still stands.
 // Throws sfm::InputError naming the file and the reason.

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <cstring>
 #include <fstream>
 
 #include "sfm/atomic_file.h"
@@ -30,6 +32,14 @@ class CheckpointFile : public testing::Test {
     return "no error";
   }
 
+  // The bytes with the sum that they should have at their end.
+  void WriteWithRightSum(std::string bytes) {
+    const auto crc = static_cast<std::uint32_t>(
+        crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size() - 4));
+    std::memcpy(bytes.data() + bytes.size() - 4, &crc, 4);
+    std::ofstream(path_, std::ios::binary) << bytes;
+  }
+
   test::ScratchFolder folder_;
   std::filesystem::path path_ = folder_.path() / "checkpoint.nerf";
   Checkpoint checkpoint_;
@@ -53,7 +63,7 @@ TEST_F(CheckpointFile, CutShortAnywhereIsRefused) {
 
 TEST_F(CheckpointFile, AFlippedBitIsFound) {
   const std::string whole = sfm::ReadWholeFile(path_);
-  for (std::size_t at = 24; at < whole.size(); at += 1 + whole.size() / 53) {
+  for (std::size_t at = 0; at < whole.size(); at += 1 + whole.size() / 53) {
     std::string damaged = whole;
     damaged[at] ^= 0x10;
     std::ofstream(path_, std::ios::binary) << damaged;
@@ -63,9 +73,46 @@ TEST_F(CheckpointFile, AFlippedBitIsFound) {
 
 TEST_F(CheckpointFile, AnotherVersionIsNamed) {
   std::string bytes = sfm::ReadWholeFile(path_);
-  bytes[8] = 9;
-  std::ofstream(path_, std::ios::binary) << bytes;
+  bytes.replace(bytes.find("\"version\":\"3\""), 13, "\"version\":\"9\"");
+  WriteWithRightSum(bytes);
   EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("version 9"));
+  std::ofstream(path_, std::ios::binary) << "NERFCKPT and what followed it";
+  EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("version 2"));
+}
+
+// What Python's safetensors checks too: a shape that fits its bytes, places inside the data.
+TEST_F(CheckpointFile, AHeaderThatDoesNotFitItsDataIsRefused) {
+  const std::string whole = sfm::ReadWholeFile(path_);
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"[3,4]", "[4,4]"},
+                                 {"[3,4]", "[3,9]"},
+                                 {"\"F32\"", "\"F64\""},
+                                 {"\"F32\"", "\"F99\""},
+                                 {"[8,56]", "[9,56]"},
+                                 {"[8,56]", "[8,99]"},
+                                 {"[8,56]", "[56,8]"},
+                                 {"\"meta\"", "\"mata\""}}) {
+    std::string changed = whole;
+    const std::size_t at = changed.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    changed.replace(at, from.size(), to);
+    WriteWithRightSum(changed);
+    EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("cannot be understood")) << from << " " << to;
+  }
+}
+
+TEST_F(CheckpointFile, TensorsKeepTypeShapeAndBits) {
+  Checkpoint odd;
+  odd.tensors["empty"] = torch::empty({0, 3});
+  odd.tensors["scalar"] = torch::tensor(0.1, torch::kDouble);
+  odd.tensors["strided"] = torch::arange(6, torch::kInt).view({2, 3}).t();
+  odd.tensors["nan"] = torch::full({2}, NAN);
+  WriteCheckpoint(path_, odd);
+  const Checkpoint read = ReadCheckpoint(path_);
+  ASSERT_EQ(read.tensors.size(), 4u);
+  EXPECT_EQ(read.tensors.at("empty").sizes(), at::IntArrayRef({0, 3}));
+  EXPECT_EQ(read.tensors.at("scalar").item<double>(), 0.1);
+  EXPECT_TRUE(torch::equal(read.tensors.at("strided"), odd.tensors["strided"]));
+  EXPECT_TRUE(torch::isnan(read.tensors.at("nan")).all().item<bool>());
 }
 
 TEST_F(CheckpointFile, ATensorOfAnotherShapeIsNamed) {
