@@ -249,6 +249,7 @@ void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& 
 }
 
 RenderOutput PacketRenderer::Render(const RayBatch& rays) {
+  CheckRays(rays);
   field_.Refresh();
   if (proposal_) proposal_->Refresh();
   const std::int64_t count = rays.Size();

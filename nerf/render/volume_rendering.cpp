@@ -1,5 +1,7 @@
 #include "nerf/render/volume_rendering.h"
 
+#include <cmath>
+
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
 #include "nerf/parallel.h"
@@ -13,6 +15,23 @@ template <class Real>
 kernels::RaySegments<Real> Segments(const torch::autograd::variable_list& v) {
   return {Span<const std::int64_t>(v[0]), Span<const Real>(v[1]), Span<const Real>(v[3]),
           Span<const Real>(v[4]),         Span<const Real>(v[2]), Span<const Real>(v[5])};
+}
+
+// Throws c10::Error with the index of the first ray whose samples do not stand in order with
+// lengths of 0 or more. What is NaN is neither.
+void CheckOrder(const torch::Tensor& ray_begin, const torch::Tensor& dt, const torch::Tensor& t) {
+  const auto begin = Span<const std::int64_t>(ray_begin);
+  AT_DISPATCH_FLOATING_TYPES(dt.scalar_type(), "check_order", [&] {
+    const auto lengths = Span<const scalar_t>(dt), places = Span<const scalar_t>(t);
+    for (std::size_t r = 0; r + 1 < begin.size(); ++r) {
+      for (std::int64_t i = begin[r]; i < begin[r + 1]; ++i) {
+        TORCH_CHECK(lengths[i] >= 0, "RenderVolume: ray ", r, ": dt is ", lengths[i], " at sample ",
+                    i, ", want 0 or more");
+        TORCH_CHECK(i == begin[r] ? !std::isnan(places[i]) : places[i] >= places[i - 1],
+                    "RenderVolume: ray ", r, ": t does not rise at sample ", i);
+      }
+    }
+  });
 }
 
 struct VolumeRenderingFunction : torch::autograd::Function<VolumeRenderingFunction> {
@@ -123,6 +142,7 @@ VolumeRendering RenderVolume(const torch::Tensor& ray_begin, const torch::Tensor
                   background.sizes() == at::IntArrayRef({rays, 3}),
               "RenderVolume: want sigma [S], radiance [S,3], dt [S], t [S], background [R,3]; got ",
               sigma.sizes(), radiance.sizes(), dt.sizes(), t.sizes(), background.sizes());
+  CheckOrder(ray_begin.contiguous(), dt.contiguous(), t.contiguous());
   const auto out = VolumeRenderingFunction::apply(ray_begin.contiguous(), sigma.contiguous(),
                                                   radiance.contiguous(), dt.contiguous(),
                                                   t.contiguous(), background.contiguous());

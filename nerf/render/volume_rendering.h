@@ -16,11 +16,12 @@ struct VolumeRendering {
 //   ray_begin   [R+1] int64, first sample of each ray; the last entry is S
 //   sigma       [S]   1 / scene unit, >= 0
 //   radiance    [S,3]
-//   dt, t       [S]   scene units; length and place of each sample's interval
+//   dt, t       [S]   scene units; length (0 or more) and place (rising on a ray) of each interval
 //   background  [R,3]
 //   returns     of an empty ray: the background, opacity 0, depth 0
 // Differentiable in sigma, radiance and background, not in the sample positions. float or double.
-// Throws c10::Error on a shape or type mismatch.
+// Throws c10::Error on a shape or type mismatch, and with the ray's index where dt is negative or
+// NaN or t does not rise.
 VolumeRendering RenderVolume(const torch::Tensor& ray_begin, const torch::Tensor& sigma,
                              const torch::Tensor& radiance, const torch::Tensor& dt,
                              const torch::Tensor& t, const torch::Tensor& background);

@@ -28,16 +28,18 @@ void EqualIntervals(const RayBatch& rays, std::int64_t r, const MarchOptions& op
   const auto near = static_cast<float>(options.near_distance);
   const auto far = static_cast<float>(options.far_distance);
   // Knots stand evenly in place, where speed times dt/dplace is smooth as far as the eye can see:
-  // beyond the unit ball the contraction slows down as fast as 1/t places reach out.
+  // beyond the unit ball the contraction slows down as fast as 1/t places reach out. The place of
+  // a far enough `far` rounds to 2, whose distance is infinite: it is `far` all the same.
   constexpr int kKnots = 32;
   std::array<float, kKnots + 1> length{};
   const float step = PlaceBehindNear(far - near) / kKnots;
   float before = 0;
   for (int k = 0; k <= kKnots; ++k) {
     const float place = step * static_cast<float>(k);
-    const float t = near + DistanceOfPlace(place);
-    const float dt_dplace = place < 1 ? 1 : 1 / ((2 - place) * (2 - place));
-    const float speed = ContractedSpeed(origin + t * direction, direction) * dt_dplace;
+    const float behind_near = std::min(DistanceOfPlace(place), far - near);
+    const float dt_dplace = place < 1 ? 1 : behind_near * behind_near;
+    const float speed =
+        ContractedSpeed(origin + (near + behind_near) * direction, direction) * dt_dplace;
     if (k > 0) length[k] = length[k - 1] + 0.5f * (before + speed) * step;
     before = speed;
   }
@@ -67,20 +69,24 @@ void ResampleIntervals(std::span<const float> edges, std::span<const float> weig
   const double even = sum > 0 ? static_cast<double>(padding) * share : share;
   const double total = (sum > 0 ? 1.0 : 0.0) + even * static_cast<double>(intervals);
 
-  const auto places = static_cast<double>(out.size());
+  const auto shares = static_cast<double>(out.size() - 1);
   std::size_t i = 0;
   double before = 0;  // weight in front of interval i
   double own = static_cast<double>(weights[0]) * scale + even;
-  for (std::size_t m = 0; m < out.size(); ++m) {
-    const double wanted = total * (static_cast<double>(m) + static_cast<double>(jitter)) / places;
+  for (std::size_t m = 1; m + 1 < out.size(); ++m) {
+    const double wanted =
+        total * (static_cast<double>(m) + static_cast<double>(jitter) - 0.5) / shares;
     while (i + 1 < intervals && before + own < wanted) {
       before += own;
       ++i;
       own = static_cast<double>(weights[i]) * scale + even;
     }
-    const auto fraction = static_cast<float>(std::clamp((wanted - before) / own, 0.0, 1.0));
+    const auto fraction =
+        own > 0 ? static_cast<float>(std::clamp((wanted - before) / own, 0.0, 1.0)) : 0.0f;
     out[m] = edges[i] + fraction * (edges[i + 1] - edges[i]);
   }
+  out.front() = edges.front();
+  out.back() = edges.back();
 }
 
 void CutByWeights(std::span<const float> edges, std::span<const float> weights, float trust,

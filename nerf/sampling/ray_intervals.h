@@ -20,12 +20,14 @@ void EqualIntervals(const RayBatch& rays, std::int64_t r, const MarchOptions& op
                     std::span<float> edges);
 
 // Cuts a ray anew so that each interval holds an equal share of the weight that a histogram gives:
-// the inverse of its cumulative distribution at regular places. Source: Mildenhall et al. 2020,
-// section 5.2; one jitter a ray, as in Barron et al. 2022.
+// the inverse of its cumulative distribution at regular places, one jitter a ray. Source:
+// Mildenhall et al. 2020, section 5.2; Barron et al. 2022. The first and the last edge are the
+// ray's ends, so that no part of it is left out: what is (one interval in M + 1 elsewhere) is light
+// that fog loses.
 //   edges    [N+1] rising    weights  [N] >= 0, of any sum
 //   padding  added to each weight's share of 1 / N, so that no place is given up for good
-//   jitter   in [0,1), shifts all the places together
-//   out      [M+1] written, rising, within edges
+//   jitter   in [0,1), shifts the inner edges together by jitter - 1/2 of an interval
+//   out      [M+1] written, rising, from edges[0] to edges[N]
 void ResampleIntervals(std::span<const float> edges, std::span<const float> weights, float padding,
                        float jitter, std::span<float> out);
 

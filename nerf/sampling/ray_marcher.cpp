@@ -12,9 +12,8 @@ namespace nerf {
 
 namespace {
 
-// Far out along the ray the contracted point hardly moves; without a bound one step would be longer
-// than everything before it.
-constexpr float kSlowest = 1e-6f;
+// What a speed is divided by at least.
+constexpr float kSlowest = 1e-20f;
 
 // At most how much faster than x the contracted point moves, r = |x|: the tangential speed, which
 // falls with r. Radially it is 1/r^2.
@@ -51,7 +50,10 @@ void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
   float fraction = 1.0f - rays.jitter[r];
   while (t < far_distance) {
     const float speed = Speed(origin + t * direction, direction);
-    const float dt = std::min(fraction * step / std::max(speed, kSlowest), far_distance - t);
+    // Far out along the ray the contracted point hardly moves; without a bound one step would be
+    // longer than everything before it.
+    const float longest = std::min(std::max(t, 1.0f), far_distance - t);
+    const float dt = std::min(fraction * step / std::max(speed, kSlowest), longest);
     fraction = 1.0f;
     const float middle = t + 0.5f * dt;
     const Eigen::Vector3f x_in_cube = InCube(origin + middle * direction);
@@ -80,10 +82,10 @@ void MarchOptions::Check() const {
     throw sfm::InputError(
         "config: march.sampler is \"{}\"; use \"auto\", \"occupancy\" or \"proposal\"", sampler);
   }
-  if (!(near_distance >= 0 && near_distance < far_distance && far_distance <= 1e6f)) {
+  if (!(near_distance >= 0 && near_distance < far_distance && far_distance <= 1e8)) {
     throw sfm::InputError(
         "config: march.near_distance {} and march.far_distance {} must satisfy "
-        "0 <= near < far <= 1e6",
+        "0 <= near < far <= 1e8",
         near_distance, far_distance);
   }
   if (steps_per_unit < 1 || steps_per_unit > 4096) {

@@ -1,8 +1,40 @@
 #include "nerf/sampling/rays.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
+#include <cmath>
+#include <span>
+#include <stdexcept>
 
 namespace nerf {
+namespace {
+
+// Squares of what lies within it are far from overflowing.
+constexpr float kFarthestOrigin = 1e9f;
+
+}  // namespace
+
+void CheckRays(const RayBatch& rays) {
+  const auto finite = [](std::span<const float> values) {
+    return std::ranges::all_of(values, [](float v) { return std::isfinite(v); });
+  };
+  for (std::int64_t r = 0; r < rays.Size(); ++r) {
+    const std::span direction(&rays.direction[3 * r], 3);
+    const double length =
+        std::hypot(static_cast<double>(direction[0]), static_cast<double>(direction[1]),
+                   static_cast<double>(direction[2]));
+    const char* wrong = nullptr;
+    const bool near = std::ranges::all_of(std::span(&rays.origin[3 * r], 3), [](float x) {
+      return std::fabs(x) <= kFarthestOrigin;
+    });
+    if (!near) wrong = "origin is not finite, or farther out than 1e9";
+    if (!(std::fabs(length - 1) <= 1e-3)) wrong = "direction is no unit vector";
+    if (!finite({&rays.background[3 * r], 3})) wrong = "background is not finite";
+    if (!(rays.jitter[r] >= 0 && rays.jitter[r] <= 1)) wrong = "jitter is not in [0,1]";
+    if (wrong != nullptr) throw std::invalid_argument(fmt::format("ray {}: its {}", r, wrong));
+  }
+}
 
 PackedSamples KeepFront(const PackedSamples& samples, const std::vector<std::int64_t>& kept) {
   PackedSamples out;

@@ -21,6 +21,11 @@ struct RayBatch {
   }
 };
 
+// Throws std::invalid_argument with the index of the first ray that is none: a number that is not
+// finite, an origin beyond 1e9, a direction that is no unit vector (to 1e-3), a jitter outside
+// [0,1]. What renders rays calls it once a batch.
+void CheckRays(const RayBatch& rays);
+
 // The samples of a batch of rays, packed ray after ray.
 struct PackedSamples {
   std::vector<std::int64_t> ray_begin;  // [R+1] first sample of each ray; the last entry is S

@@ -140,8 +140,10 @@ std::int64_t FusedEngine::Forward(const RayBatch& rays, std::int64_t first, std:
 namespace {
 
 // Names the first ray whose colour is not finite, and the stage that spoilt it.
+//   target  [R,3] of the tile, whose first ray is `first` of the batch
 std::string DescribeNonFinite(const FieldTile& field, std::span<const std::int64_t> ray,
-                              std::span<const float> t) {
+                              std::span<const float> t, std::span<const float> target,
+                              std::int64_t first) {
   for (std::size_t i = 0; i < ray.size(); ++i) {
     if (!std::isfinite(field.density.sigma[i])) {
       return fmt::format("ray {}, stage density, sample at t = {}", ray[i], t[i]);
@@ -152,7 +154,12 @@ std::string DescribeNonFinite(const FieldTile& field, std::span<const std::int64
       }
     }
   }
-  return "stage compositing or loss (target colours)";
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    if (!std::isfinite(target[i])) {
+      return fmt::format("ray {}, stage target colours", first + static_cast<std::int64_t>(i / 3));
+    }
+  }
+  return "stage compositing or loss";
 }
 
 // Loss of one colour channel and its derivative, as ColorLoss defines them.
@@ -191,7 +198,9 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
   }
   if (!std::isfinite(loss)) {
     throw NonFiniteError("the loss is not finite: " +
-                         DescribeNonFinite(tile.field, tile.ray, tile.samples.t));
+                         DescribeNonFinite(tile.field, tile.ray, tile.samples.t,
+                                           std::span(batch.rgb).subspan(3 * first, 3 * count),
+                                           first));
   }
   worker.loss += loss;
 
@@ -220,6 +229,7 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
 }
 
 RenderOutput FusedEngine::Render(const RayBatch& rays) {
+  CheckRays(rays);
   Refresh();
   const std::int64_t count = rays.Size();
   RenderOutput out;
@@ -251,6 +261,7 @@ RenderOutput FusedEngine::Render(const RayBatch& rays) {
 }
 
 StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
+  CheckRays(batch.rays);
   Refresh();
   const std::int64_t count = batch.rays.Size();
   // A fixed share of the rays for each thread, so that sums repeat bit for bit.

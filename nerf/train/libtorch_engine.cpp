@@ -29,7 +29,7 @@ void ScaleGradients(const FieldOutput& field, const torch::Tensor& t, double ful
 
 // Names the first ray whose colour is not finite, and the stage that spoilt it.
 std::string DescribeNonFinite(const PackedSamples& samples, const FieldOutput& field,
-                              const torch::Tensor& rgb) {
+                              const torch::Tensor& rgb, const torch::Tensor& target) {
   const auto first_bad = [](const torch::Tensor& values) {
     const torch::Tensor bad = torch::nonzero(torch::logical_not(torch::isfinite(values)));
     return bad.size(0) > 0 ? bad[0][0].item<std::int64_t>() : std::int64_t{-1};
@@ -43,7 +43,10 @@ std::string DescribeNonFinite(const PackedSamples& samples, const FieldOutput& f
   if (const std::int64_t r = first_bad(rgb); r >= 0) {
     return fmt::format("ray {}, stage compositing", r);
   }
-  return "stage loss (target colours)";
+  if (const std::int64_t r = first_bad(target); r >= 0) {
+    return fmt::format("ray {}, stage target colours", r);
+  }
+  return "stage loss";
 }
 
 }  // namespace
@@ -89,6 +92,7 @@ PackedSamples LibTorchEngine::VisibleSamples(const PackedSamples& samples) {
 
 // A ray's way from its origin to its pixel.
 LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
+  CheckRays(rays);
   const torch::Dtype dtype = parts_.field->Dtype();
   Evaluated out;
   PackedSamples placed;
@@ -145,7 +149,7 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   result.loss = loss.item<double>();
   if (!std::isfinite(result.loss)) {
     throw NonFiniteError("the loss is not finite: " +
-                         DescribeNonFinite(out.samples, out.field, out.pixels.rgb));
+                         DescribeNonFinite(out.samples, out.field, out.pixels.rgb, target));
   }
   torch::Tensor total = loss;
   if (parts_.proposal) {

@@ -78,8 +78,7 @@ void TrainOptions::Check() const {
                           1 << 22);
   }
   if (!(error_driven_share >= 0 && error_driven_share <= 1)) {
-    throw sfm::InputError("config: train.error_driven_share is {}; use 0 to 1",
-                          error_driven_share);
+    throw sfm::InputError("config: train.error_driven_share is {}; use 0 to 1", error_driven_share);
   }
   if (checkpoint_every < 1 || validate_every < 1) {
     throw sfm::InputError("config: train.checkpoint_every and validate_every must be at least 1");

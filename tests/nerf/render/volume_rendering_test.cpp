@@ -1,7 +1,11 @@
 #include "nerf/render/volume_rendering.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <torch/torch.h>
+
+#include <cmath>
+#include <string>
 
 #include "nerf/parallel.h"
 #include "tests/support/central_differences.h"
@@ -65,6 +69,25 @@ TEST(RenderVolume, TheNumberOfThreadsChangesNothing) {
   SetNumThreads(AvailableCores());
   EXPECT_TRUE(torch::equal(one.sigma.grad(), three.sigma.grad()));
   EXPECT_TRUE(torch::equal(one.radiance.grad(), three.radiance.grad()));
+}
+
+TEST(RenderVolume, RefusesSamplesOutOfOrderWithTheirRay) {
+  const double nan = std::nan("");
+  const auto refusal = [](torch::Tensor Batch::*values, std::int64_t sample, double value) {
+    Batch batch;  // rays of 5, 0 and 7 samples
+    (batch.*values)[sample] = value;
+    try {
+      batch.Render();
+    } catch (const c10::Error& error) {
+      return std::string(error.msg());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(refusal(&Batch::dt, 6, -0.1), testing::HasSubstr("ray 2"));
+  EXPECT_THAT(refusal(&Batch::dt, 4, nan), testing::HasSubstr("ray 0"));
+  EXPECT_THAT(refusal(&Batch::t, 3, 0.0), testing::HasSubstr("ray 0: t does not rise at sample 3"));
+  EXPECT_THAT(refusal(&Batch::t, 5, nan), testing::HasSubstr("ray 2"));
+  EXPECT_THAT(refusal(&Batch::t, 0, -5.0), testing::HasSubstr("no error"));
 }
 
 TEST(RenderVolume, RefusesShapesThatDoNotFit) {

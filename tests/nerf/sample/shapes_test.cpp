@@ -92,6 +92,36 @@ TEST(Box, IsMissedByParallelRaysOutsideASlab) {
   EXPECT_FALSE(Intersect(box, MakeRay({-5, 0, 0}, {1, 0.5, 0})));
 }
 
+TEST(Box, SignedZerosInADirectionMakeNoDifference) {
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  for (const double zero : {0.0, -0.0}) {
+    ExpectHit(box, MakeRay({-5, 0.5, 0.5}, {1, zero, zero}), 4, {-1, 0, 0});
+    EXPECT_FALSE(Intersect(box, MakeRay({-5, 1.5, 0}, {1, zero, zero})));
+  }
+}
+
+// From a face, along a face, along an edge, through a corner: met or missed, never half of both.
+TEST(Box, RaysThatTouchItAreMetSomewhereOrMissIt) {
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      for (const Eigen::Vector3d& along :
+           {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(-0.0, -0.0, -1),
+            Eigen::Vector3d(1, 1, 0), Eigen::Vector3d(-1, 1, 1)}) {
+        for (const double back : {0.0, 3.0}) {
+          const Eigen::Vector3d d = along.normalized();
+          const auto hit = Intersect(box, {Eigen::Vector3d(x, y, 0) - back * d, d});
+          if (!hit) continue;
+          EXPECT_TRUE(std::isfinite(hit->distance) && hit->distance >= 0);
+          EXPECT_NEAR(hit->normal_in_world.norm(), 1, 1e-12);
+          const Eigen::Vector3d at = Eigen::Vector3d(x, y, 0) + (hit->distance - back) * d;
+          EXPECT_NEAR(at.cwiseAbs().maxCoeff(), 1, 1e-12) << "on the surface";
+        }
+      }
+    }
+  }
+}
+
 TEST(Disc, IsMetWithinItsRadiusFromBothSides) {
   const Disc disc{{1, 0, 0.5}, 2};
   ExpectHit(disc, MakeRay({1, 0, 2.5}, {0, 0, -1}), 2, {0, 0, 1});

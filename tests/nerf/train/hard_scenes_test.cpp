@@ -1,0 +1,254 @@
+// Whole trainings of scenes that break others, each to a finite end of a stated quality.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "nerf/data/image_metrics.h"
+#include "nerf/render/image_renderer.h"
+#include "nerf/train/checkpoint.h"
+#include "nerf/train/engine.h"
+#include "nerf/train/non_finite_error.h"
+#include "nerf/train/run_folder.h"
+#include "nerf/train/trainer.h"
+#include "sfm/scene_normalization.h"
+#include "tests/support/analytic_capture.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/small_capture.h"
+
+namespace nerf {
+namespace {
+
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+using test::AnalyticCapture;
+using test::CameraRing;
+using test::PsnrOver;
+
+const std::atomic<bool> never_stop = false;
+
+Config Settings(std::int64_t steps, const std::vector<std::string>& changes = {}) {
+  std::vector<std::string> assignments = {"encoding.log2_table_size=12",
+                                          "encoding.max_resolution=64",
+                                          "field.hidden_width=16",
+                                          "proposal.encoding.log2_table_size=11",
+                                          "proposal.anneal_steps=50",
+                                          "occupancy.resolution=32",
+                                          "occupancy.coarse_to_fine_steps=100",
+                                          "march.steps_per_unit=48",
+                                          "train.max_rays_per_batch=512",
+                                          "train.samples_per_batch=8192",
+                                          "train.checkpoint_every=1000",
+                                          "train.validate_every=1000",
+                                          "train.steps=" + std::to_string(steps)};
+  assignments.insert(assignments.end(), changes.begin(), changes.end());
+  return LoadConfig("base", assignments);
+}
+
+// What a person says who knows that nothing stands before the cameras.
+constexpr char kNothingNear[] = "march.near_distance=0.8";
+
+// Trains; what a checkpoint then holds is finite, whatever the scene.
+Model Trained(const Config& config, const SceneFacts& scene, const Dataset& data) {
+  const test::ScratchFolder run;
+  Trainer trainer(config, scene, data, run.path());
+  EXPECT_TRUE(trainer.Run(never_stop).finished);
+  for (const auto& [name, tensor] : ReadRunCheckpoint(run.path()).tensors) {
+    EXPECT_TRUE(torch::isfinite(tensor).all().item<bool>()) << name;
+  }
+  return trainer.GetModel();
+}
+
+double HeldOutPsnr(const AnalyticCapture& capture, const Config& config) {
+  return PsnrOver(Trained(config, capture.scene, capture.data), capture.held_out);
+}
+
+// How far a ray goes through the ball about the origin, and where it enters; 0 where it misses.
+struct Chord {
+  float begin = 0, end = 0;
+  float Length() const { return end - begin; }
+};
+Chord ThroughBall(const Vector3f& origin, const Vector3f& direction, float radius) {
+  const float middle = -origin.dot(direction);
+  const float square = radius * radius - (origin + middle * direction).squaredNorm();
+  if (square <= 0 || middle + std::sqrt(square) <= 0) return {};
+  return {std::max(0.0f, middle - std::sqrt(square)), middle + std::sqrt(square)};
+}
+
+// Surroundings that differ in each direction.
+Vector3f Sky(const Vector3f& d) {
+  return Vector3f(0.5f + 0.3f * d.x(), 0.5f + 0.3f * d.y(), 0.5f + 0.3f * d.z());
+}
+
+TEST(HardScene, ThinFogKeepsItsOpacity) {
+  // A ball of fog through which 95 % of the light comes.
+  const auto fog = [](const Vector3f& origin, const Vector3f& direction) {
+    const float tau = 0.05f * ThroughBall(origin, direction, 0.5f).Length();
+    return Vector4f(1.0f, 0.6f, 0.2f, -std::expm1(-tau));
+  };
+  const AnalyticCapture capture(CameraRing(24, 1.5, 0.8), 24, 24, fog, /*has_alpha=*/true);
+  const Model model = Trained(Settings(1000), capture.scene, capture.data);
+  EXPECT_GT(PsnrOver(model, capture.held_out), 40);  // nothing at all would be 29 dB
+
+  RayBatch through_the_middle;
+  through_the_middle.Resize(1);
+  through_the_middle.origin = {0, -1.5f, 0};
+  through_the_middle.direction = {0, 1, 0};
+  through_the_middle.jitter = {0.5f};
+  const double opacity = model.engine->Render(through_the_middle).opacity[0];
+  EXPECT_NEAR(opacity, -std::expm1(-0.05), 0.25 * 0.05);
+}
+
+TEST(HardScene, AMirrorIsSeenIfNotUnderstood) {
+  const auto mirror = [](const Vector3f& origin, const Vector3f& direction) -> Vector4f {
+    const Chord chord = ThroughBall(origin, direction, 0.5f);
+    if (chord.Length() <= 0) return Sky(direction).homogeneous();
+    const Vector3f normal = (origin + chord.begin * direction).normalized();
+    return Sky(direction - 2 * direction.dot(normal) * normal).homogeneous();
+  };
+  const AnalyticCapture capture(CameraRing(96, 1.5, 0.8), 24, 24, mirror);
+  EXPECT_GT(HeldOutPsnr(capture, Settings(400, {kNothingNear})), 22);
+}
+
+TEST(HardScene, ABlackSceneStaysBlackAndAWhiteOneWhite) {
+  for (const float value : {0.0f, 1.0f}) {
+    for (const bool has_alpha : {false, true}) {
+      const auto plain = [value](const Vector3f&, const Vector3f&) {
+        return Vector4f(value, value, value, 1.0f);
+      };
+      const AnalyticCapture capture(CameraRing(12, 1.5, 0.8), 16, 16, plain, has_alpha);
+      EXPECT_GT(HeldOutPsnr(capture, Settings(200)), 30) << value << " " << has_alpha;
+    }
+  }
+}
+
+TEST(HardScene, NothingAtAllIsLearnedAsNothing) {
+  const auto nothing = [](const Vector3f&, const Vector3f&) { return Vector4f(0, 0, 0, 0); };
+  const AnalyticCapture capture(CameraRing(12, 1.5, 0.8), 16, 16, nothing, /*has_alpha=*/true);
+  EXPECT_GT(HeldOutPsnr(capture, Settings(200)), 40);
+}
+
+// A ball with stripes before a sky.
+Vector4f StripedBall(const Vector3f& origin, const Vector3f& direction) {
+  const Chord chord = ThroughBall(origin, direction, 0.5f);
+  if (chord.Length() <= 0) return Sky(direction).homogeneous();
+  const Vector3f x = origin + chord.begin * direction;
+  return Vector4f(0.5f + 0.4f * std::sin(8 * x.x()), 0.5f + 0.4f * std::sin(8 * x.z()), 0.3f, 1.0f);
+}
+
+TEST(HardScene, OneOverexposedPhotographDoesNotSpoilTheOthers) {
+  AnalyticCapture capture(CameraRing(96, 1.5, 0.8), 24, 24, StripedBall);
+  View& bright = capture.data.train[7];
+  for (std::size_t i = 0; i < bright.rgba.size(); ++i) {
+    if (i % 4 < 3) {
+      bright.rgba[i] = Eigen::half(std::min(1.0f, 8 * static_cast<float>(bright.rgba[i])));
+    }
+  }
+  EXPECT_GT(HeldOutPsnr(capture, Settings(400, {kNothingNear})), 22);
+}
+
+TEST(HardScene, CamerasInsideMatterSeeItsColour) {
+  // The first cameras stand within the red ball, the others around it; it is cut out by alpha.
+  const auto red_ball = [](const Vector3f& origin, const Vector3f& direction) {
+    const bool hits = ThroughBall(origin, direction, 0.5f).Length() > 0;
+    return hits ? Vector4f(0.8f, 0.1f, 0.1f, 1.0f) : Vector4f(0, 0, 0, 0);
+  };
+  auto cameras = CameraRing(64, 1.5, 0.8);
+  for (int i = 0; i < 8; ++i) cameras[i].translation() *= 0.1;
+  const AnalyticCapture capture(cameras, 24, 24, red_ball, /*has_alpha=*/true);
+  EXPECT_GT(HeldOutPsnr(capture, Settings(400)), 20);
+}
+
+TEST(HardScene, TwoPhotographsAreLearnedByHeart) {
+  const AnalyticCapture capture(CameraRing(2, 1.5, 0.1), 32, 32, StripedBall, false, 0);
+  ASSERT_EQ(capture.data.train.size(), 2u);
+  const Model model = Trained(Settings(400), capture.scene, capture.data);
+  EXPECT_GT(PsnrOver(model, capture.data.train), 25);
+}
+
+TEST(HardScene, TenThousandPhotographsOfAFewPixels) {
+  const AnalyticCapture capture(CameraRing(10000, 1.5, 0.8), 8, 8, StripedBall, false, 100);
+  EXPECT_EQ(capture.data.train.size(), 9900u);
+  EXPECT_GT(HeldOutPsnr(capture, Settings(300)), 22);
+}
+
+TEST(HardScene, OnePhotographOfOnePixelTrains) {
+  const AnalyticCapture capture(CameraRing(1, 1.5, 0.1), 1, 1, StripedBall, false, 0);
+  const Model model =
+      Trained(Settings(50, {"train.max_rays_per_batch=1"}), capture.scene, capture.data);
+  EXPECT_GT(PsnrOver(model, capture.data.train), 20);
+}
+
+// The units of the input cancel before training begins: what is left is the rounding of poses.
+TEST(HardScene, AMillimetreAndTenKilometresTrainAlike) {
+  const auto psnr_at = [](double scale) {
+    test::SmallCapture small = test::MakeSmallCapture(24, 32, 24);
+    for (sfm::PosedImage& image : small.capture.posed.images) {
+      image.world_from_camera.translation() *= scale;
+    }
+    small.scene.normalized_from_world = sfm::NormalizeScene(small.capture.posed);
+    std::size_t of_train = 0;
+    for (const sfm::PosedImage& image : small.capture.posed.images) {
+      if (image.split != sfm::Split::kTrain) continue;
+      small.data.train[of_train++].normalized_from_camera =
+          small.scene.normalized_from_world.NormalizedFromCamera(image.world_from_camera);
+    }
+    const Model model = Trained(Settings(300), small.scene, small.data);
+    return PsnrOver(model, small.data.train);
+  };
+  const double usual = psnr_at(1.0);
+  EXPECT_GT(usual, 18);
+  // The built-in scene is about four units across.
+  EXPECT_NEAR(psnr_at(0.25e-3), usual, 0.1);
+  EXPECT_NEAR(psnr_at(0.25e4), usual, 0.1);
+}
+
+// With steps far too long the field is thrown about: it must come to a finite end, or say where it
+// broke; and what is on disk can be rendered either way.
+TEST(HardScene, AHundredThousandRecklessStepsEndWithAReasonAtWorst) {
+  const AnalyticCapture capture(CameraRing(4, 1.5, 0.8), 4, 4, StripedBall, true, 0);
+  for (const char* rate : {"optimizer.learning_rate=1", "optimizer.learning_rate=1e6"}) {
+    const test::ScratchFolder run;
+    const Config config = Settings(
+        100000, {rate, "encoding.levels=2", "encoding.log2_table_size=8", "occupancy.resolution=8",
+                 "train.max_rays_per_batch=2", "march.steps_per_unit=8", "march.far_distance=3"});
+    Trainer trainer(config, capture.scene, capture.data, run.path());
+    std::string reason = "finished";
+    try {
+      EXPECT_TRUE(trainer.Run(never_stop).finished);
+    } catch (const NonFiniteError& error) {
+      reason = error.what();
+      EXPECT_THAT(reason, testing::HasSubstr("step "));
+      EXPECT_THAT(reason, testing::HasSubstr("stage "));
+    }
+    RecordProperty(rate, reason);
+    for (const auto& [name, tensor] : ReadRunCheckpoint(run.path()).tensors) {
+      EXPECT_TRUE(torch::isfinite(tensor).all().item<bool>()) << name << ", " << reason;
+    }
+  }
+}
+
+// A photograph that holds what is no number, past every reader that would have refused it.
+TEST(HardScene, AValueThatIsNoNumberNamesStepRayAndStageAndKeepsTheLastCheckpoint) {
+  AnalyticCapture capture(CameraRing(8, 1.5, 0.8), 16, 16, StripedBall);
+  const Config config = Settings(400, {"train.checkpoint_every=1", "train.max_rays_per_batch=8"});
+  capture.data.train[1].rgba[4 * 70] = std::numeric_limits<Eigen::half>::quiet_NaN();
+  const test::ScratchFolder run;
+  Trainer trainer(config, capture.scene, capture.data, run.path());
+  std::string reason;
+  try {
+    trainer.Run(never_stop);
+  } catch (const NonFiniteError& error) {
+    reason = error.what();
+  }
+  EXPECT_THAT(reason, testing::AllOf(testing::HasSubstr("step "), testing::HasSubstr("ray "),
+                                     testing::HasSubstr("target colours"),
+                                     testing::HasSubstr("checkpoint stays")));
+  const Model model = ModelFromCheckpoint(ReadRunCheckpoint(run.path()));
+  EXPECT_TRUE(std::isfinite(PsnrOver(model, capture.held_out)));
+}
+
+}  // namespace
+}  // namespace nerf
