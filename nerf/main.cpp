@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     nerf::AddEvalCommand(app);
     nerf::AddPosesCommand(app);
     nerf::AddSampleCommand(app);
+    nerf::AddSelfcheckCommand(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& e) {

@@ -13,5 +13,6 @@ void AddPosesCommand(CLI::App& app);
 void AddTrainCommand(CLI::App& app);
 void AddRenderCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);
+void AddSelfcheckCommand(CLI::App& app);
 
 }  // namespace nerf

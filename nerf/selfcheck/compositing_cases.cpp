@@ -1,0 +1,386 @@
+// The volume-rendering integral and its gradient, where they are hard to compute.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "nerf/kernels/flush_denormals.h"
+#include "nerf/selfcheck/numeric_case.h"
+#include "nerf/selfcheck/one_ray.h"
+
+namespace nerf {
+namespace {
+
+using Ray = OneRay<float>;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+const std::vector<float> kRed = {1, 0, 0}, kAll = {1, 1, 1};
+
+long double OpticalDepth(const Ray& ray) {
+  long double tau = 0;
+  for (std::size_t i = 0; i < ray.Size(); ++i) {
+    tau += static_cast<long double>(ray.sigma[i]) * static_cast<long double>(ray.dt[i]);
+  }
+  return tau;
+}
+
+Ray RandomRay(int samples, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  Ray ray;
+  for (int i = 0; i < samples; ++i) {
+    ray.Add(std::exp(6 * uniform(generator) - 3), 0.1f * uniform(generator), uniform(generator),
+            uniform(generator), uniform(generator));
+  }
+  return ray;
+}
+
+double RandomRaysMatchTheOracle() {
+  WorstError worst;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const Ray ray = RandomRay(64, seed);
+    const auto pixel = ray.Composite();
+    const reference::Pixel truth = reference::Composite(ray.Oracle());
+    for (int c = 0; c < 3; ++c) worst.AddRelative(pixel.rgb[c], truth.rgb[c]);
+    worst.AddRelative(pixel.opacity, truth.opacity);
+    worst.AddRelative(pixel.depth, truth.depth);
+  }
+  return worst.Get();
+}
+
+double GradientsOfRandomRaysMatchTheOracle() {
+  WorstError worst;
+  const std::vector<float> g_rgb = {0.3f, -0.7f, 0.2f};
+  const long double g[3] = {g_rgb[0], g_rgb[1], g_rgb[2]};
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const Ray ray = RandomRay(48, seed);
+    const auto gradients = ray.Backward(g_rgb, 0.4f, -0.1f);
+    const auto truth = reference::GradientOfSigma(ray.Oracle(), g, 0.4f, -0.1f);
+    const auto T_end = reference::TransmittanceBefore(ray.Oracle(), ray.Size());
+    for (std::size_t i = 0; i < ray.Size(); ++i) {
+      worst.AddRelative(gradients.sigma[i], truth[i], 1e-6L);
+      const long double weight = reference::Weight(ray.Oracle(), i);
+      for (int c = 0; c < 3; ++c) {
+        worst.AddRelative(gradients.radiance[3 * i + c], weight * g[c], 1e-24L);
+      }
+    }
+    for (int c = 0; c < 3; ++c) worst.AddRelative(gradients.background[c], T_end * g[c], 1e-24L);
+  }
+  return worst.Get();
+}
+
+double EmptySpaceShowsTheBackground() {
+  WorstError worst;
+  Ray ray;
+  for (int i = 0; i < 8; ++i) ray.Add(0.0f, 0.1f);
+  for (const Ray& empty : {ray, Ray()}) {
+    const auto pixel = empty.Composite();
+    for (int c = 0; c < 3; ++c) worst.Add(std::fabs(pixel.rgb[c] - empty.background[c]));
+    worst.Add(pixel.opacity);
+    worst.Add(pixel.depth);
+  }
+  return worst.Get();
+}
+
+double EmptySpaceCanStillLearn() {
+  WorstError worst;
+  Ray ray;
+  for (int i = 0; i < 8; ++i) ray.Add(0.0f, 0.1f);
+  for (const float g : ray.Backward(kRed).sigma) {
+    worst.AddRelative(g, 0.1f * (0.5L - static_cast<long double>(0.2f)));  // dt (c - b)
+  }
+  return worst.Get();
+}
+
+double ThinFogKeepsItsOpacity() {
+  WorstError worst;
+  for (const double tau : {1e-6, 1e-5, 1e-4, 1e-3}) {
+    Ray ray;
+    for (int i = 0; i < 1024; ++i) ray.Add(static_cast<float>(tau / 1024 / 0.01), 0.01f);
+    worst.AddRelative(ray.Composite().opacity, -std::expm1(-OpticalDepth(ray)));
+  }
+  return worst.Get();
+}
+
+double AnOpaqueIntervalTakesAllTheWeight() {
+  WorstError worst;
+  Ray ray;
+  ray.Add(0.0f, 0.1f);
+  ray.Add(1e10f, 1.0f, 1.0f, 0.0f, 0.0f);
+  ray.Add(3.0f, 0.1f);
+  const auto weights = ray.Weights();
+  for (int i = 0; i < 3; ++i) worst.Add(std::fabs(weights[i] - (i == 1 ? 1.0f : 0.0f)));
+  const auto gradients = ray.Backward(kAll, 1, 1);
+  for (const float g : gradients.sigma) worst.RequireFinite(g);
+  for (const float g : gradients.radiance) worst.RequireFinite(g);
+  worst.Require(gradients.sigma[0] != 0 && gradients.sigma[2] == 0);
+  return worst.Get();
+}
+
+double ExtremeDensitiesAndLengthsStayFinite() {
+  WorstError worst;
+  const float extremes[] = {0.0f, 1e-10f, 1.0f, 1e10f, 1e30f};
+  for (const float sigma : extremes) {
+    for (const float length : extremes) {
+      Ray ray;
+      ray.Add(sigma, length);
+      ray.Add(1.0f, 0.1f);
+      const auto pixel = ray.Composite();
+      for (const float value : pixel.rgb) worst.RequireFinite(value);
+      worst.RequireFinite(pixel.opacity);
+      worst.RequireFinite(pixel.depth);
+      const auto gradients = ray.Backward(kAll, 1);
+      for (const float g : gradients.sigma) worst.RequireFinite(g);
+      for (const float g : gradients.radiance) worst.RequireFinite(g);
+    }
+  }
+  return worst.Get();
+}
+
+double InfiniteDensityOverNoLengthIsEmpty() {
+  WorstError worst;
+  Ray ray;
+  ray.Add(kInfinity, 0.0f);
+  worst.Add(ray.Composite().opacity);
+  worst.Add(ray.Weights()[0]);
+  worst.Add(std::fabs(ray.Backward(kAll, 1, 1).sigma[0]));
+  return worst.Get();
+}
+
+double WeightsAreRightForEveryOpticalDepth() {
+  WorstError worst;
+  for (int k = -24; k <= 5; ++k) {
+    for (int repeats = 1; repeats <= 3; ++repeats) {
+      Ray ray;
+      for (int i = 0; i < repeats; ++i) ray.Add(std::ldexp(1.0f, k), 1.0f);
+      const auto weights = ray.Weights();
+      for (std::size_t i = 0; i < ray.Size(); ++i) {
+        // What is less than the smallest normal float is 0 as well.
+        worst.AddRelative(weights[i], reference::Weight(ray.Oracle(), i), 1e-33L);
+      }
+    }
+  }
+  return worst.Get();
+}
+
+double NoLightIsLostOrMade() {
+  WorstError worst;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    Ray ray = RandomRay(256, seed);
+    std::fill(ray.radiance.begin(), ray.radiance.end(), 1.0f);
+    std::fill(ray.background.begin(), ray.background.end(), 1.0f);
+    worst.Add(std::fabs(static_cast<double>(ray.Composite().rgb[0]) - 1.0));
+    double sum = 0;
+    for (const float w : ray.Weights()) sum += static_cast<double>(w);
+    const auto T_end = reference::TransmittanceBefore(ray.Oracle(), ray.Size());
+    worst.Add(std::fabs(sum + static_cast<double>(T_end) - 1.0));
+  }
+  return worst.Get();
+}
+
+double SplittingAnIntervalChangesNothing() {
+  WorstError worst;
+  for (const float sigma : {1e-6f, 0.1f, 3.0f, 100.0f}) {
+    Ray whole, split;
+    whole.Add(sigma, 0.5f);
+    split.Add(sigma, 0.25f);
+    split.Add(sigma, 0.25f);
+    const auto a = whole.Composite(), b = split.Composite();
+    for (int c = 0; c < 3; ++c) worst.AddRelative(b.rgb[c], a.rgb[c]);
+    worst.AddRelative(b.opacity, a.opacity);
+  }
+  return worst.Get();
+}
+
+double AHomogeneousSlabFollowsBeerAndLambert() {
+  WorstError worst;
+  constexpr int kSteps = 4096;
+  constexpr float kLength = 2.0f, kSigma = 1.7f;
+  OneRay<double> ray;
+  for (int i = 0; i < kSteps; ++i) ray.Add(double{kSigma}, double{kLength} / kSteps);
+  const double T = std::exp(-double{kSigma} * double{kLength});
+  const auto pixel = ray.Composite();
+  worst.AddRelative(pixel.rgb[0], 0.5 * (1 - T) + 0.2 * T);
+  // The mean of t under sigma e^{-sigma (t-1)} on [1, 1 + L], times the opacity; samples stand in
+  // the middle of their steps, which is right to second order.
+  worst.AddRelative(pixel.depth, (1 - T) * (1 + 1 / double{kSigma}) - double{kLength} * T);
+  return worst.Get();
+}
+
+double TheUnitOfLengthDoesNotMatter() {
+  WorstError worst;
+  for (const float scale : {1e-3f, 0.5f, 1e4f}) {
+    Ray ray = RandomRay(64, 5), scaled = ray;
+    for (std::size_t i = 0; i < ray.Size(); ++i) {
+      scaled.sigma[i] /= scale;
+      scaled.dt[i] *= scale;
+      scaled.t[i] *= scale;
+    }
+    const auto a = ray.Composite(), b = scaled.Composite();
+    for (int c = 0; c < 3; ++c) worst.AddRelative(b.rgb[c], a.rgb[c]);
+    worst.AddRelative(b.depth, a.depth * scale);
+  }
+  return worst.Get();
+}
+
+// dC/dalpha_k = dC/dx_k e^{x_k} = T_k (c_k - C_behind), where e^{-x_k} is nearly gone.
+double AnOpaqueSampleStillTellsItsGradient() {
+  WorstError worst;
+  for (const float x : {1.0f, 10.0f, 20.0f, 40.0f, 80.0f}) {
+    Ray ray;
+    ray.Add(0.5f, 1.0f);
+    ray.Add(x, 1.0f, 0.9f);
+    ray.Add(2.0f, 1.0f, 0.1f);
+    const double T_k = std::exp(-0.5), T_behind = std::exp(-2.0);
+    const double behind = 0.1 * (1 - T_behind) + 0.2 * T_behind;
+    const double of_alpha =
+        static_cast<double>(ray.Backward(kRed).sigma[1]) * std::exp(static_cast<double>(x));
+    worst.AddRelative(of_alpha, T_k * (0.9 - behind));
+  }
+  return worst.Get();
+}
+
+double GradientsDeepInTheRayKeepTheirSign() {
+  WorstError worst;
+  Ray ray;
+  for (int i = 0; i < 40; ++i) ray.Add(4.0f, 0.1f, i % 3 == 0 ? 0.9f : 0.1f);
+  const long double g[3] = {1, 0, 0};
+  const auto truth = reference::GradientOfSigma(ray.Oracle(), g, 0, 0);
+  const auto gradients = ray.Backward(kRed);
+  worst.Require(reference::TransmittanceBefore(ray.Oracle(), 38) < 1e-5L);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    worst.AddRelative(gradients.sigma[i], truth[i]);
+  }
+  return worst.Get();
+}
+
+double GradientsMatchCentralDifferences() {
+  WorstError worst;
+  std::mt19937 generator(11);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  OneRay<double> ray;
+  for (int i = 0; i < 12; ++i) {
+    ray.Add(3 * uniform(generator), 0.3 * uniform(generator), uniform(generator),
+            uniform(generator), uniform(generator));
+  }
+  const std::vector<double> g = {0.3, -0.7, 0.2};
+  const auto loss = [&] {
+    const auto pixel = ray.Composite();
+    return g[0] * pixel.rgb[0] + g[1] * pixel.rgb[1] + g[2] * pixel.rgb[2] + 0.4 * pixel.opacity -
+           0.1 * pixel.depth;
+  };
+  const auto gradients = ray.Backward(g, 0.4, -0.1);
+  const auto compare = [&](std::vector<double>& inputs, const std::vector<double>& gradient) {
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const double at = inputs[i], h = 1e-5;
+      inputs[i] = at + h;
+      const double above = loss();
+      inputs[i] = at - h;
+      const double below = loss();
+      inputs[i] = at;
+      worst.AddRelative(gradient[i], (above - below) / (2 * h), 1e-2L);
+    }
+  };
+  compare(ray.sigma, gradients.sigma);
+  compare(ray.radiance, gradients.radiance);
+  compare(ray.background, gradients.background);
+  return worst.Get();
+}
+
+double DenormalLightIsNoTrouble() {
+  WorstError worst;
+  for (const float tau : {80.0f, 87.0f, 95.0f, 102.0f, 110.0f}) {
+    Ray ray;
+    ray.Add(tau, 1.0f);
+    ray.Add(1.0f, 1.0f);
+    const auto plain = ray.Composite();
+    const auto plain_gradients = ray.Backward(kAll, 1, 1);
+    const kernels::FlushDenormals flush;
+    const auto flushed = ray.Composite();
+    const auto flushed_gradients = ray.Backward(kAll, 1, 1);
+    for (int c = 0; c < 3; ++c) worst.Add(std::fabs(plain.rgb[c] - flushed.rgb[c]));
+    worst.Add(std::fabs(plain.opacity - flushed.opacity));
+    for (std::size_t i = 0; i < ray.Size(); ++i) {
+      worst.Add(std::fabs(plain_gradients.sigma[i] - flushed_gradients.sigma[i]));
+    }
+  }
+  return worst.Get();
+}
+
+double StoppingEarlyLeavesTheRestToTheBackground() {
+  WorstError worst;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const Ray ray = RandomRay(200, seed);
+    for (const double stop : {1e-1, 1e-2, 1e-4}) {
+      const auto begin = ray.Begin();
+      std::vector<std::int64_t> kept(1);
+      kernels::CountVisible<float>(begin, ray.sigma, ray.dt, stop, kept, 0, 1);
+      Ray front = ray;
+      for (auto* values : {&front.sigma, &front.dt, &front.t}) values->resize(kept[0]);
+      front.radiance.resize(3 * kept[0]);
+      const auto whole = ray.Composite(), stopped = front.Composite();
+      // No colour here is above 1: what changes is at most the light that was left.
+      for (int c = 0; c < 3; ++c) worst.Add(std::fabs(whole.rgb[c] - stopped.rgb[c]) / stop);
+    }
+  }
+  return worst.Get();
+}
+
+double IntervalsOfNoLengthCountForNothing() {
+  WorstError worst;
+  Ray with, without;
+  for (int i = 0; i < 6; ++i) {
+    with.Add(2.0f, 0.1f);
+    without.Add(2.0f, 0.1f);
+    with.Add(5.0f, 0.0f, 9.0f, 9.0f, 9.0f);
+  }
+  const auto a = with.Composite(), b = without.Composite();
+  for (int c = 0; c < 3; ++c) worst.Add(std::fabs(a.rgb[c] - b.rgb[c]));
+  const auto gradients = with.Backward(kAll, 1, 1);
+  for (std::size_t i = 1; i < with.Size(); i += 2) {
+    worst.Add(std::fabs(gradients.sigma[i]));
+    worst.Add(with.Weights()[i]);
+  }
+  return worst.Get();
+}
+
+}  // namespace
+
+std::vector<NumericCase> CompositingCases() {
+  const std::string relative = "relative to long double";
+  return {
+      {"RandomRaysMatchTheOracle", relative, 1e-6, false, RandomRaysMatchTheOracle},
+      {"GradientsOfRandomRaysMatchTheOracle", relative, 1e-6, false,
+       GradientsOfRandomRaysMatchTheOracle},
+      {"EmptySpaceShowsTheBackground", "colour", 0, false, EmptySpaceShowsTheBackground},
+      {"EmptySpaceCanStillLearn", "gradient, relative", 1e-6, false, EmptySpaceCanStillLearn},
+      {"ThinFogKeepsItsOpacity", "opacity, relative", 1e-5, false, ThinFogKeepsItsOpacity},
+      {"AnOpaqueIntervalTakesAllTheWeight", "weight", 0, false, AnOpaqueIntervalTakesAllTheWeight},
+      {"ExtremeDensitiesAndLengthsStayFinite", "finite or not", 0, false,
+       ExtremeDensitiesAndLengthsStayFinite},
+      {"InfiniteDensityOverNoLengthIsEmpty", "opacity, gradient", 0, false,
+       InfiniteDensityOverNoLengthIsEmpty},
+      {"WeightsAreRightForEveryOpticalDepth", relative, 1e-5, false,
+       WeightsAreRightForEveryOpticalDepth},
+      {"NoLightIsLostOrMade", "sum of weights and rest", 256 * 1.2e-7, false, NoLightIsLostOrMade},
+      {"SplittingAnIntervalChangesNothing", "colour, relative", 1e-6, false,
+       SplittingAnIntervalChangesNothing},
+      {"AHomogeneousSlabFollowsBeerAndLambert", "colour, depth, relative", 1e-6, false,
+       AHomogeneousSlabFollowsBeerAndLambert},
+      {"TheUnitOfLengthDoesNotMatter", "colour, depth, relative", 1e-6, false,
+       TheUnitOfLengthDoesNotMatter},
+      {"AnOpaqueSampleStillTellsItsGradient", "gradient, relative", 1e-4, false,
+       AnOpaqueSampleStillTellsItsGradient},
+      {"GradientsDeepInTheRayKeepTheirSign", "gradient, relative", 1e-4, false,
+       GradientsDeepInTheRayKeepTheirSign},
+      {"GradientsMatchCentralDifferences", relative, 1e-7, false, GradientsMatchCentralDifferences},
+      {"DenormalLightIsNoTrouble", "with flush-to-zero against without", 1e-37, false,
+       DenormalLightIsNoTrouble},
+      {"StoppingEarlyLeavesTheRestToTheBackground", "colour, parts of the light left", 1, false,
+       StoppingEarlyLeavesTheRestToTheBackground},
+      {"IntervalsOfNoLengthCountForNothing", "colour, gradient", 0, false,
+       IntervalsOfNoLengthCountForNothing},
+  };
+}
+
+}  // namespace nerf

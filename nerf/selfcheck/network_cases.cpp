@@ -1,0 +1,222 @@
+// Small networks, in float and in bfloat16, and the optimiser's step.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "nerf/kernels/adam.h"
+#include "nerf/kernels/bfloat16_product.h"
+#include "nerf/kernels/mlp.h"
+#include "nerf/selfcheck/numeric_case.h"
+#include "tests/reference/mlp.h"
+
+namespace nerf {
+namespace {
+
+using kernels::PaddedWidth;
+using kernels::Precision;
+using kernels::TileMlp;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// A network with random weights and a tile of random inputs, odd in every size.
+struct Trial {
+  std::vector<int> widths;
+  std::int64_t samples = 13;
+  std::vector<std::vector<float>> weights;
+  std::vector<float> inputs, dL_dout;  // [samples, width]
+
+  explicit Trial(std::vector<int> layer_widths) : widths(std::move(layer_widths)) {
+    std::mt19937 generator(7);
+    std::normal_distribution<float> normal;
+    for (std::size_t l = 0; l + 1 < widths.size(); ++l) {
+      weights.emplace_back(widths[l] * widths[l + 1]);
+      for (float& w : weights.back()) w = normal(generator);
+    }
+    inputs.resize(samples * widths.front());
+    for (float& x : inputs) x = normal(generator);
+    dL_dout.resize(samples * widths.back());
+    for (float& g : dL_dout) g = normal(generator);
+  }
+
+  struct Result {
+    std::vector<float> out, dL_din, dL_dw;
+  };
+  Result Run(Precision precision) const {
+    TileMlp mlp(widths, precision);
+    std::vector<const float*> pointers;
+    for (const auto& layer : weights) pointers.push_back(layer.data());
+    mlp.Load(pointers);
+    std::vector<std::vector<float>> storage;
+    std::vector<float*> rows;
+    for (const int width : widths) storage.emplace_back(samples * PaddedWidth(width), 0.0f);
+    for (auto& layer : storage) rows.push_back(layer.data());
+    Put(inputs, widths.front(), rows.front());
+    mlp.Forward(samples, rows);
+    Result result;
+    result.out = Take(rows.back(), widths.back());
+    std::fill(storage.back().begin(), storage.back().end(), 0.0f);
+    Put(dL_dout, widths.back(), rows.back());
+    result.dL_dw.assign(mlp.GradientSize(), 0.0f);
+    mlp.Backward(samples, rows, result.dL_dw);
+    result.dL_din = Take(rows.front(), widths.front());
+    return result;
+  }
+
+ private:
+  void Put(const std::vector<float>& values, int width, float* row) const {
+    for (std::int64_t s = 0; s < samples; ++s) {
+      std::copy_n(&values[s * width], width, row + s * PaddedWidth(width));
+    }
+  }
+  std::vector<float> Take(const float* row, int width) const {
+    std::vector<float> values(samples * width);
+    for (std::int64_t s = 0; s < samples; ++s) {
+      std::copy_n(row + s * PaddedWidth(width), width, &values[s * width]);
+    }
+    return values;
+  }
+};
+
+const std::vector<std::vector<int>> kWidths = {
+    {5, 3}, {32, 64, 16}, {7, 9, 20, 3}, {31, 16, 16, 16, 3}};
+
+double LargestOf(const std::vector<float>& values) {
+  double largest = 0;
+  for (const float v : values) largest = std::max(largest, std::fabs(static_cast<double>(v)));
+  return largest;
+}
+
+double NetworksMatchPlainLoops() {
+  WorstError worst;
+  for (const std::vector<int>& widths : kWidths) {
+    const Trial trial(widths);
+    reference::Weights exact;
+    for (const auto& layer : trial.weights) exact.emplace_back(layer.begin(), layer.end());
+    const auto out = trial.Run(Precision::kFloat).out;
+    for (std::int64_t s = 0; s < trial.samples; ++s) {
+      const auto* const x = &trial.inputs[s * widths.front()];
+      const auto truth = reference::Mlp(widths, exact, {x, x + widths.front()});
+      for (std::size_t o = 0; o < truth.size(); ++o) {
+        worst.AddRelative(out[s * truth.size() + o], truth[o], LargestOf(out));
+      }
+    }
+  }
+  return worst.Get();
+}
+
+// The derivative along the gradient's own direction, from both sides: dL = |dL/din|^2 h.
+double NetworkGradientsMatchDifferences() {
+  WorstError worst;
+  for (const std::vector<int>& widths : kWidths) {
+    const Trial trial(widths);
+    reference::Weights exact;
+    for (const auto& layer : trial.weights) exact.emplace_back(layer.begin(), layer.end());
+    const auto dL_din = trial.Run(Precision::kFloat).dL_din;
+    for (std::int64_t s = 0; s < trial.samples; ++s) {
+      const auto loss = [&](int input, double moved) {
+        std::vector<double> x(&trial.inputs[s * widths.front()],
+                              &trial.inputs[s * widths.front()] + widths.front());
+        x[input] += moved;
+        const auto out = reference::Mlp(widths, exact, x);
+        double sum = 0;
+        for (std::size_t o = 0; o < out.size(); ++o) {
+          sum += out[o] * static_cast<double>(trial.dL_dout[s * out.size() + o]);
+        }
+        return sum;
+      };
+      for (int i = 0; i < widths.front(); ++i) {
+        constexpr double kStep = 1e-7;
+        const double numeric = (loss(i, kStep) - loss(i, -kStep)) / (2 * kStep);
+        worst.AddRelative(dL_din[s * widths.front() + i], numeric, LargestOf(dL_din));
+      }
+    }
+  }
+  return worst.Get();
+}
+
+double NetworksInBfloat16StayCloseToFloat() {
+  WorstError worst;
+  for (const std::vector<int>& widths : kWidths) {
+    const Trial trial(widths);
+    const auto exact = trial.Run(Precision::kFloat), rounded = trial.Run(Precision::kBfloat16);
+    const double size = LargestOf(exact.out);
+    for (std::size_t i = 0; i < exact.out.size(); ++i) {
+      worst.Add(std::fabs(static_cast<double>(exact.out[i] - rounded.out[i])) / size);
+    }
+  }
+  return worst.Get();
+}
+
+double NetworksDoNotHideNaN() {
+  WorstError worst;
+  for (const Precision precision : {Precision::kFloat, Precision::kBfloat16}) {
+    Trial trial({32, 64, 16});
+    trial.inputs[5] = kNaN;  // of the first sample
+    const auto out = trial.Run(precision).out;
+    for (int o = 0; o < 16; ++o) worst.Require(std::isnan(out[o]));
+    for (std::size_t i = 16; i < out.size(); ++i) worst.RequireFinite(out[i]);
+  }
+  return worst.Get();
+}
+
+// Steps of Adam by the published algorithm in double.
+double AdamFollowsThePublishedAlgorithm() {
+  WorstError worst;
+  kernels::AdamCoefficients adam;
+  adam.learning_rate = 1e-2f;
+  for (const float size : {1e-20f, 1e-6f, 1.0f, 1e6f}) {
+    constexpr int kCount = 19;
+    std::vector<float> p(kCount, 0.5f), g(kCount), m(kCount, 0.0f), v(kCount, 0.0f);
+    std::vector<double> exact_p(kCount, 0.5), exact_m(kCount, 0.0), exact_v(kCount, 0.0);
+    const double b1 = static_cast<double>(adam.beta1), b2 = static_cast<double>(adam.beta2);
+    const double rate = static_cast<double>(adam.learning_rate);
+    for (int step = 1; step <= 20; ++step) {
+      for (int i = 0; i < kCount; ++i) {
+        g[i] = size * std::sin(static_cast<float>(i + 3 * step));
+        const double gradient = static_cast<double>(g[i]);
+        exact_m[i] = b1 * exact_m[i] + (1 - b1) * gradient;
+        exact_v[i] = b2 * exact_v[i] + (1 - b2) * gradient * gradient;
+        const double first = exact_m[i] / (1 - std::pow(b1, step));
+        const double second = exact_v[i] / (1 - std::pow(b2, step));
+        exact_p[i] -= rate * first / (std::sqrt(second) + static_cast<double>(adam.epsilon));
+      }
+      worst.Require(kernels::AdamStep(adam, kernels::BiasCorrection(adam, step), p, g, m, v));
+    }
+    for (int i = 0; i < kCount; ++i) worst.AddRelative(p[i], exact_p[i], 0.1L);
+  }
+  return worst.Get();
+}
+
+double AdamTellsOfEveryGradientThatIsNotFinite() {
+  WorstError worst;
+  const kernels::AdamCoefficients adam;
+  for (const float bad : {kNaN, std::numeric_limits<float>::infinity()}) {
+    for (std::size_t at = 0; at < 19; ++at) {
+      std::vector<float> p(19, 0.5f), g(19, 0.1f), m(19, 0.0f), v(19, 0.0f);
+      g[at] = bad;
+      worst.Require(!kernels::AdamStep(adam, kernels::BiasCorrection(adam, 1), p, g, m, v));
+    }
+  }
+  return worst.Get();
+}
+
+}  // namespace
+
+std::vector<NumericCase> NetworkCases() {
+  return {
+      {"NetworksMatchPlainLoops", "output, parts of the largest", 1e-6, true,
+       NetworksMatchPlainLoops},
+      {"NetworkGradientsMatchDifferences", "gradient, parts of the largest", 1e-5, true,
+       NetworkGradientsMatchDifferences},
+      {"NetworksInBfloat16StayCloseToFloat", "output, parts of the largest", 2e-2, true,
+       NetworksInBfloat16StayCloseToFloat},
+      {"NetworksDoNotHideNaN", "shown or not", 0, true, NetworksDoNotHideNaN},
+      {"AdamFollowsThePublishedAlgorithm", "parameter, relative", 2e-5, true,
+       AdamFollowsThePublishedAlgorithm},
+      {"AdamTellsOfEveryGradientThatIsNotFinite", "told or not", 0, true,
+       AdamTellsOfEveryGradientThatIsNotFinite},
+  };
+}
+
+}  // namespace nerf
