@@ -6,14 +6,13 @@
 // After foreach_target.h:
 #include <hwy/highway.h>
 
+#include "nerf/kernels/product_blocks-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace nerf::kernels {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, kRowPadding>;
 using DU = hn::RebindToUnsigned<D>;
-using V = hn::Vec<D>;
 using VU = hn::Vec<DU>;
 
 // A float's bits, rounded to nearest even so that the upper half is the bfloat16.
@@ -65,89 +64,42 @@ void PairColumnsImpl(const float* from, std::int64_t row, std::int64_t rows, std
   }
 }
 
-// As in matrix_product.cpp, with two products a step.
-constexpr int kMostVectors = 2;
-constexpr int kMostRows = 4;
+// Two products a step, of which the even numbers stand in the lower halves.
+struct PairSum {
+  static constexpr int kMostRows = 4;
+  static constexpr int kMostVectors = 2;
 
-template <Epilogue kEpilogue>
-HWY_INLINE void Finish(V value, float* at) {
-  const D d;
-  if constexpr (kEpilogue == Epilogue::kAdd) value = hn::Add(hn::LoadU(d, at), value);
-  if constexpr (kEpilogue == Epilogue::kStoreRelu) {
-    value = hn::IfThenZeroElse(hn::Lt(value, hn::Zero(d)), value);
-  }
-  if constexpr (kEpilogue == Epilogue::kStoreMasked) {
-    value = hn::IfThenElseZero(hn::Gt(hn::LoadU(d, at), hn::Zero(d)), value);
-  }
-  hn::StoreU(value, d, at);
-}
-
-template <int kRows, int kVectors, Epilogue kEpilogue>
-HWY_INLINE void Block(const Bfloat16Product& p, std::int64_t row, std::int64_t column) {
-  const D d;
-  const DU du;
-  const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
-  const VU upper = hn::Set(du, 0xffff0000u);
-  V sum[kRows][kVectors];
-  for (int r = 0; r < kRows; ++r) {
-    for (int v = 0; v < kVectors; ++v) sum[r][v] = hn::Zero(d);
-  }
-  for (std::int64_t k = 0; k < p.inner; ++k) {
-    V even[kVectors], odd[kVectors];
-    for (int v = 0; v < kVectors; ++v) {
-      const VU pair = hn::LoadU(du, p.b + k * p.b_row + column + v * lanes);
-      even[v] = hn::BitCast(d, hn::ShiftLeft<16>(pair));
-      odd[v] = hn::BitCast(d, hn::And(pair, upper));
-    }
-    for (int r = 0; r < kRows; ++r) {
-      const VU pair = hn::Set(du, p.a[(row + r) * p.a_row + k * p.a_inner]);
-      const V a_even = hn::BitCast(d, hn::ShiftLeft<16>(pair));
-      const V a_odd = hn::BitCast(d, hn::And(pair, upper));
+  template <int kRows, int kVectors>
+  static HWY_INLINE void Of(const Bfloat16Product& p, std::int64_t row, std::int64_t column,
+                            V (&sum)[kRows][kVectors]) {
+    const D d;
+    const DU du;
+    const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
+    const VU upper = hn::Set(du, 0xffff0000u);
+    for (std::int64_t k = 0; k < p.inner; ++k) {
+      V even[kVectors], odd[kVectors];
       for (int v = 0; v < kVectors; ++v) {
-        sum[r][v] = hn::MulAdd(a_odd, odd[v], hn::MulAdd(a_even, even[v], sum[r][v]));
+        const VU pair = hn::LoadU(du, p.b + k * p.b_row + column + v * lanes);
+        even[v] = hn::BitCast(d, hn::ShiftLeft<16>(pair));
+        odd[v] = hn::BitCast(d, hn::And(pair, upper));
+      }
+      for (int r = 0; r < kRows; ++r) {
+        const VU pair = hn::Set(du, p.a[(row + r) * p.a_row + k * p.a_inner]);
+        const V a_even = hn::BitCast(d, hn::ShiftLeft<16>(pair));
+        const V a_odd = hn::BitCast(d, hn::And(pair, upper));
+        for (int v = 0; v < kVectors; ++v) {
+          sum[r][v] = hn::MulAdd(a_odd, odd[v], hn::MulAdd(a_even, even[v], sum[r][v]));
+        }
       }
     }
   }
-  for (int r = 0; r < kRows; ++r) {
-    for (int v = 0; v < kVectors; ++v) {
-      Finish<kEpilogue>(sum[r][v], p.c + (row + r) * p.c_row + column + v * lanes);
-    }
-  }
-}
-
-template <int kVectors, Epilogue kEpilogue>
-HWY_INLINE void Columns(const Bfloat16Product& p, std::int64_t column) {
-  std::int64_t row = 0;
-  for (; row + kMostRows <= p.rows; row += kMostRows) {
-    Block<kMostRows, kVectors, kEpilogue>(p, row, column);
-  }
-  for (; row < p.rows; ++row) Block<1, kVectors, kEpilogue>(p, row, column);
-}
-
-template <Epilogue kEpilogue>
-void AllColumns(const Bfloat16Product& p) {
-  const auto lanes = static_cast<std::int64_t>(hn::Lanes(D()));
-  std::int64_t column = 0;
-  for (; column + kMostVectors * lanes <= p.columns; column += kMostVectors * lanes) {
-    Columns<kMostVectors, kEpilogue>(p, column);
-  }
-  for (; column < p.columns; column += lanes) Columns<1, kEpilogue>(p, column);
-}
+};
 
 // Whether this level is one at which native products may run: tests choose lower ones.
 bool IsAvx512Impl() { return HWY_TARGET <= HWY_AVX3; }
 
 void MultiplyImpl(const Bfloat16Product& p, Epilogue epilogue) {
-  switch (epilogue) {
-    case Epilogue::kStore:
-      return AllColumns<Epilogue::kStore>(p);
-    case Epilogue::kAdd:
-      return AllColumns<Epilogue::kAdd>(p);
-    case Epilogue::kStoreRelu:
-      return AllColumns<Epilogue::kStoreRelu>(p);
-    case Epilogue::kStoreMasked:
-      return AllColumns<Epilogue::kStoreMasked>(p);
-  }
+  MultiplyInBlocks<PairSum>(p, epilogue);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "nerf/parallel.h"
-#include "nerf/sampling/ray_intervals.h"
 
 namespace nerf {
 namespace {
@@ -17,11 +16,6 @@ constexpr std::int64_t kSlab = 4;
 
 // Light that gets through where a packet's samples missed what its ray meets.
 constexpr double kMissed = 0.1;
-
-ProposalOptions WithSamples(ProposalOptions options, int samples) {
-  options.samples = samples;
-  return options;
-}
 
 // A ray on its way.
 struct RayState {
@@ -40,9 +34,7 @@ struct RayState {
 }  // namespace
 
 struct PacketRenderer::Tile {
-  RayBatch packets;  // a ray for each packet, through its middle
-  ProposalTile proposal;
-  RaySamples samples;
+  PlacedTile placed;
   std::vector<RayState> rays;
   std::vector<std::int64_t> alive;  // rays of the tile
 
@@ -61,105 +53,41 @@ PacketRenderer::PacketRenderer(std::shared_ptr<RadianceField> field,
                                ProposalOptions proposal_options, const RenderQuality& quality,
                                kernels::Precision precision)
     : field_(std::move(field), precision),
-      grid_(std::move(grid)),
+      placement_(std::move(grid), std::move(proposal), march, std::move(proposal_options), quality),
       march_(march),
-      quality_(quality) {
-  if (proposal) {
-    proposal_.emplace(std::move(proposal),
-                      WithSamples(std::move(proposal_options), quality.samples), march);
-  }
-}
+      quality_(quality) {}
 
-namespace {
-
-// The ray through the middle of each packet of rays [first, last).
-void MiddleRays(const RayBatch& rays, std::int64_t first, std::int64_t last, std::int64_t packet,
-                RayBatch& out) {
-  out.Resize((last - first + packet - 1) / packet);
-  for (std::int64_t p = 0; p < out.Size(); ++p) {
-    const std::int64_t begin = first + p * packet, end = std::min(last, begin + packet);
-    Eigen::Vector3f origin = Eigen::Vector3f::Zero(), direction = Eigen::Vector3f::Zero();
-    for (std::int64_t r = begin; r < end; ++r) {
-      origin += Eigen::Map<const Eigen::Vector3f>(&rays.origin[3 * r]);
-      direction += Eigen::Map<const Eigen::Vector3f>(&rays.direction[3 * r]);
-    }
-    Eigen::Map<Eigen::Vector3f>(&out.origin[3 * p]) = origin / static_cast<float>(end - begin);
-    Eigen::Map<Eigen::Vector3f>(&out.direction[3 * p]) = direction.normalized();
-    out.jitter[p] = rays.jitter[begin];
-  }
-}
-
-}  // namespace
-
-// Sets ray k of the tile on its way through the given intervals.
-void PacketRenderer::PackRay(const RayBatch& rays, std::int64_t r, std::span<const float> edges,
-                             std::int64_t k, Tile& tile) const {
-  const std::int64_t each = quality_.samples;
-  RaySamples& s = tile.samples;
-  tile.rays[k] = {};
-  tile.rays[k].next = k * each;
-  tile.rays[k].end = (k + 1) * each;
-  PackIntervalsOfRay(rays, r, edges, std::span(s.position).subspan(3 * k * each, 3 * each),
-                     std::span(s.t).subspan(k * each, each),
-                     std::span(s.dt).subspan(k * each, each));
-}
-
-void PacketRenderer::PlaceSamples(const RayBatch& rays, std::int64_t first, std::int64_t last,
-                                  Tile& tile) const {
-  const std::int64_t count = last - first;
-  tile.rays.assign(count, {});
-  RaySamples& s = tile.samples;
-  if (!proposal_) {
-    s.position.clear();
-    s.t.clear();
-    s.dt.clear();
-    for (std::int64_t k = 0; k < count; ++k) {
-      tile.rays[k].next = s.Size();
-      MarchRay(rays, first + k, *grid_, march_, s);
-      tile.rays[k].end = s.Size();
-    }
-    return;
-  }
-  if (quality_.packet == 1) {
-    proposal_->Cut(rays, first, last, tile.proposal);
-  } else {
-    MiddleRays(rays, first, last, quality_.packet, tile.packets);
-    proposal_->Cut(tile.packets, 0, tile.packets.Size(), tile.proposal);
-  }
-  const std::int64_t each = quality_.samples;
-  s.position.resize(3 * count * each);
-  s.t.resize(count * each);
-  s.dt.resize(count * each);
-  for (std::int64_t k = 0; k < count; ++k) {
-    PackRay(rays, first + k,
-            std::span(tile.proposal.edges).subspan(k / quality_.packet * (each + 1), each + 1), k,
-            tile);
+// Sets the rays of a tile at their first samples.
+void PacketRenderer::Begin(const RayBatch& rays, std::int64_t first, std::int64_t last,
+                           Tile& tile) const {
+  placement_.Place(rays, first, last, tile.placed);
+  tile.evaluated = 0;
+  tile.rays.assign(last - first, {});
+  tile.alive.clear();
+  for (std::int64_t k = 0; k < last - first; ++k) {
+    const auto [begin, end] = tile.placed.of_ray[k];
+    tile.rays[k].next = begin;
+    tile.rays[k].end = end;
+    if (begin < end) tile.alive.push_back(k);
   }
 }
 
 // Rays beside an edge, for which the middle of their packet looked in the wrong place: much light
-// still gets through. They are placed anew, each by itself.
-void PacketRenderer::PlaceMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const {
-  if (!proposal_ || quality_.packet == 1) return;
+// still gets through. They begin anew, each by itself.
+void PacketRenderer::BeginMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const {
+  if (!placement_.Shared()) return;
   for (std::size_t k = 0; k < tile.rays.size(); ++k) {
     const RayState& ray = tile.rays[k];
     if (ray.next == ray.end && ray.Transmittance() > kMissed) {
       tile.alive.push_back(static_cast<std::int64_t>(k));
     }
   }
-  const std::int64_t each = quality_.samples;
-  tile.packets.Resize(static_cast<std::int64_t>(tile.alive.size()));
-  for (std::int64_t m = 0; m < tile.packets.Size(); ++m) {
-    const std::int64_t r = first + tile.alive[m];
-    std::copy_n(&rays.origin[3 * r], 3, &tile.packets.origin[3 * m]);
-    std::copy_n(&rays.direction[3 * r], 3, &tile.packets.direction[3 * m]);
-    tile.packets.jitter[m] = rays.jitter[r];
-  }
-  proposal_->Cut(tile.packets, 0, tile.packets.Size(), tile.proposal);
-  for (std::int64_t m = 0; m < tile.packets.Size(); ++m) {
-    const std::int64_t k = tile.alive[m];
-    PackRay(rays, first + k, std::span(tile.proposal.edges).subspan(m * (each + 1), each + 1), k,
-            tile);
+  placement_.PlaceAlone(rays, first, tile.alive, tile.placed);
+  for (const std::int64_t k : tile.alive) {
+    const auto [begin, end] = tile.placed.of_ray[k];
+    tile.rays[k] = {};
+    tile.rays[k].next = begin;
+    tile.rays[k].end = end;
   }
 }
 
@@ -181,7 +109,7 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
   tile.position.clear();
   tile.sample.clear();
   tile.ray.clear();
-  const RaySamples& s = tile.samples;
+  const RaySamples& s = tile.placed.samples;
   for (const std::int64_t k : tile.alive) {
     RayState& ray = tile.rays[k];
     const std::int64_t end = std::min(ray.end, ray.next + kSlab);
@@ -236,7 +164,7 @@ void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& 
   for (std::size_t k = 0; k < tile.rays.size(); ++k) {
     const RayState& ray = tile.rays[k];
     if (!(ray.shaded == 0 && ray.met > 0)) continue;
-    const auto position = tile.samples.position.begin() + 3 * ray.heaviest;
+    const auto position = tile.placed.samples.position.begin() + 3 * ray.heaviest;
     tile.position.insert(tile.position.end(), position, position + 3);
     tile.kept.push_back(static_cast<std::int64_t>(tile.kept.size()));
     tile.kept_ray.push_back(static_cast<std::int64_t>(k));
@@ -251,7 +179,7 @@ void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& 
 RenderOutput PacketRenderer::Render(const RayBatch& rays) {
   CheckRays(rays);
   field_.Refresh();
-  if (proposal_) proposal_->Refresh();
+  placement_.Refresh();
   const std::int64_t count = rays.Size();
   RenderOutput out;
   out.rgb.resize(3 * count);
@@ -263,14 +191,9 @@ RenderOutput PacketRenderer::Render(const RayBatch& rays) {
   ParallelForEach((count + kTileRays - 1) / kTileRays, [&](std::int64_t part) {
     thread_local Tile tile;
     const std::int64_t first = part * kTileRays, last = std::min(count, first + kTileRays);
-    tile.evaluated = 0;
-    PlaceSamples(rays, first, last, tile);
-    tile.alive.clear();
-    for (std::int64_t k = 0; k < last - first; ++k) {
-      if (tile.rays[k].next < tile.rays[k].end) tile.alive.push_back(k);
-    }
+    Begin(rays, first, last, tile);
     while (!tile.alive.empty()) Advance(rays, first, tile);
-    PlaceMissed(rays, first, tile);
+    BeginMissed(rays, first, tile);
     while (!tile.alive.empty()) Advance(rays, first, tile);
     ShadeFaint(rays, first, tile);
 

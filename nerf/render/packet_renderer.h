@@ -1,13 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "nerf/render/field_tile.h"
-#include "nerf/render/proposal_tile.h"
+#include "nerf/render/packet_placement.h"
 #include "nerf/render/ray_renderer.h"
 #include "nerf/render/render_quality.h"
-#include "nerf/sampling/occupancy_grid.h"
 
 namespace nerf {
 
@@ -30,17 +28,14 @@ class PacketRenderer : public RayRenderer {
 
  private:
   struct Tile;
-  void PlaceSamples(const RayBatch& rays, std::int64_t first, std::int64_t last, Tile& tile) const;
-  void PackRay(const RayBatch& rays, std::int64_t r, std::span<const float> edges, std::int64_t k,
-               Tile& tile) const;
-  void PlaceMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const;
+  void Begin(const RayBatch& rays, std::int64_t first, std::int64_t last, Tile& tile) const;
+  void BeginMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Shade(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const;
 
   TileField field_;
-  std::shared_ptr<OccupancyGrid> grid_;
-  std::optional<TileProposal> proposal_;
+  PacketPlacement placement_;
   MarchOptions march_;
   RenderQuality quality_;
 };

@@ -2,24 +2,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
-#include "tests/support/colmap_database_file.h"
-#include "tests/support/fake_colmap.h"
-#include "tests/support/input_error_of.h"
-#include "tests/support/photo_files.h"
+#include "tests/support/colmap_run.h"
 
 namespace sfm {
 namespace {
 
 namespace fs = std::filesystem;
-using nerf::test::FakeColmap;
 using nerf::test::InputErrorOf;
 using nerf::test::ScratchFolder;
-using nerf::test::WriteColmapDatabase;
 using nerf::test::WritePhoto;
 using testing::AllOf;
 using testing::Contains;
@@ -28,44 +21,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// What the program would have said on the way.
-class LogText {
- public:
-  LogText() : before_(spdlog::default_logger()) {
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-        "test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
-  }
-  ~LogText() { spdlog::set_default_logger(before_); }
-  std::string Text() const { return text_.str(); }
-
- private:
-  std::shared_ptr<spdlog::logger> before_;
-  std::ostringstream text_;
-};
-
-class ColmapRunner : public testing::Test {
- protected:
-  void WritePhotos(int count) const {
-    for (int i = 0; i < count; ++i) {
-      WritePhoto(photos_.path() / fmt::format("p{:03}.png", i), 64, 48);
-    }
-  }
-  PosedImages Run() {
-    report_ = {};
-    return PosesFromPhotos(photos_.path(), Workspace(), options_, &report_);
-  }
-  std::string Error() {
-    return InputErrorOf([&] { Run(); });
-  }
-  fs::path Workspace() const { return out_.path() / "colmap"; }
-
-  FakeColmap fake_;
-  ScratchFolder photos_;
-  ScratchFolder out_;
-  LogText log_;
-  ColmapOptions options_;
-  ColmapReport report_;
-};
+class ColmapRunner : public nerf::test::ColmapRun {};
 
 TEST_F(ColmapRunner, EachStepRunsOnceAndTheImagesAreTheOriginals) {
   WritePhotos(6);
@@ -275,86 +231,6 @@ TEST_F(ColmapRunner, SeveralSizesAndStandInsComeBackUnderTheirOwnNames) {
     EXPECT_EQ(posed.cameras[image.camera].width, image.name == "c.png" ? 80 : 64);
   }
   EXPECT_THAT(names, testing::UnorderedElementsAre("a.jpg", "b.exr", "c.png", "d.png"));
-}
-
-TEST_F(ColmapRunner, ManyNumberedPhotosAreMatchedInSequence) {
-  for (int i = 0; i < 101; ++i) {
-    WritePhoto(photos_.path() / fmt::format("p{:03}.png", i), 16, 12);
-  }
-  fake_.Set("size", "16 12");
-  fake_.Set("models", "0 101\n");
-  Run();
-  EXPECT_THAT(fake_.Calls()[1],
-              AllOf(HasSubstr("sequential_matcher"), HasSubstr("--SequentialMatching.overlap 20")));
-}
-
-class GuidedMatching : public ColmapRunner {
- protected:
-  // What COLMAP would have found: nothing that fits together, but for the first and the last.
-  void FindFeatures(int count) {
-    std::vector<nerf::test::DatabaseImage> images;
-    for (int i = 0; i < count; ++i) images.push_back({fmt::format("p{:03}.png", i), {1, 2, 3}});
-    WriteColmapDatabase(out_.path() / "prepared.db", images, {{0, count - 1, 90}});
-    const std::string prepared = (out_.path() / "prepared.db").string();
-    fake_.Set("do_feature_extractor", "cp '" + prepared + "' \"$database\"\n");
-    // Coarse matches come into the copy, which has forgotten those of the original.
-    fake_.Set("do_exhaustive_matcher", "cp '" + prepared + "' \"$database\"\n");
-    fake_.Set("do_matches_importer",
-              "cat \"$(dirname \"$database\")/pairs.txt\" >> \"$here/pairs\"\n");
-  }
-};
-
-TEST_F(GuidedMatching, ComparesInFullThosePairsThatLookAlikeAndNeighbours) {
-  WritePhotos(30);
-  fake_.Set("models", "0 30\n");
-  FindFeatures(30);
-  Run();
-  std::vector<std::string> commands = fake_.Commands();
-  commands.erase(std::unique(commands.begin(), commands.end()), commands.end());
-  EXPECT_THAT(commands,
-              ElementsAre("feature_extractor", "exhaustive_matcher", "matches_importer", "mapper"));
-  EXPECT_THAT(fake_.Calls()[1], HasSubstr("coarse.db"));
-  const std::string pairs = fake_.Get("pairs");
-  EXPECT_EQ(std::ranges::count(pairs, '\n'), 29 + 28 + 1);
-  EXPECT_THAT(pairs, AllOf(HasSubstr("p000.png p029.png\n"), HasSubstr("p010.png p012.png\n"),
-                           Not(HasSubstr("p010.png p013.png\n"))));
-  EXPECT_FALSE(fs::exists(Workspace() / "coarse.db"));
-  EXPECT_FALSE(fs::exists(Workspace() / "pairs.txt"));
-}
-
-TEST_F(GuidedMatching, ComparesAllPairsWhereTooFewPhotosWereRegistered) {
-  WritePhotos(30);
-  fake_.Set("models", "0 20\n");
-  FindFeatures(30);
-  Run();
-  EXPECT_THAT(log_.Text(), HasSubstr("20 of 30 registered; the pairs that were left out"));
-  EXPECT_EQ(fake_.Commands().back(), "mapper");
-  EXPECT_THAT(fake_.Calls()[fake_.Calls().size() - 2],
-              AllOf(HasSubstr("exhaustive_matcher"), HasSubstr("database.db")));
-  fake_.ForgetCalls();
-  Run();
-  EXPECT_THAT(fake_.Commands(), IsEmpty());
-}
-
-TEST_F(GuidedMatching, ListsHaveNoRoomForNamesWithSpaces) {
-  WritePhotos(30);
-  fs::rename(photos_.path() / "p007.png", photos_.path() / "p 007.png");
-  fake_.Set("models", "0 30\n");
-  Run();
-  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "exhaustive_matcher", "mapper"));
-  EXPECT_THAT(log_.Text(), HasSubstr("p 007.png: guided matching"));
-}
-
-TEST(NumberedSequence, IsOneTextAroundNumbersOfOneWidth) {
-  EXPECT_TRUE(IsNumberedSequence({"0001.jpg", "0002.jpg", "0004.jpg"}));
-  EXPECT_TRUE(IsNumberedSequence({"v2_frame_08.png", "v2_frame_09.png", "v2_frame_10.png"}));
-  EXPECT_FALSE(IsNumberedSequence({"frame_10.png", "frame_8.png", "frame_9.png"}));
-  EXPECT_FALSE(IsNumberedSequence({"a1.jpg", "b2.jpg"}));
-  EXPECT_FALSE(IsNumberedSequence({"01.jpg", "02.png"}));
-  EXPECT_FALSE(IsNumberedSequence({"front.jpg", "left.jpg"}));
-  EXPECT_FALSE(IsNumberedSequence({"0001.jpg", "0002.jpg", "0900.jpg"}));
-  EXPECT_FALSE(IsNumberedSequence({"1234567890123456789012345.jpg", "2.jpg"}));
-  EXPECT_FALSE(IsNumberedSequence({}));
 }
 
 TEST(ColmapOptions, UnknownValuesAreNamedWithTheMend) {
