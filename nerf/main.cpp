@@ -52,6 +52,8 @@ int main(int argc, char** argv) {
     nerf::AddSelfcheckCommand(app);
     app.parse(argc, argv);
     return 0;
+  } catch (const CLI::RuntimeError& e) {
+    return e.get_exit_code();  // a command that ran, and whose answer is no
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : kExitBadInput;
   } catch (const std::filesystem::filesystem_error& e) {

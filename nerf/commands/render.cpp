@@ -19,6 +19,7 @@
 #include "nerf/output/color_map.h"
 #include "nerf/output/video.h"
 #include "nerf/render/image_renderer.h"
+#include "nerf/sampling/rays.h"
 #include "nerf/train/run_folder.h"
 #include "nerf/train/view_renderer.h"
 #include "sfm/atomic_file.h"
@@ -176,6 +177,7 @@ void RunRender(const RenderArguments& arguments) {
   for (const Shot& shot : list.shots) {
     const Eigen::Isometry3d normalized_from_camera =
         scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera);
+    CheckCameraCentre(normalized_from_camera.translation(), shot.name);
     const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
     for (const int factor : {8, 4}) {
       if (!arguments.preview) break;

@@ -10,6 +10,7 @@
 #include "nerf/data/image_io.h"
 #include "nerf/parallel.h"
 #include "nerf/sampling/random.h"
+#include "nerf/sampling/rays.h"
 #include "sfm/input_error.h"
 
 namespace nerf {
@@ -28,6 +29,7 @@ View MakeView(const sfm::PosedImages& posed, const sfm::PosedImage& image, const
   view.name = image.name;
   view.camera = Downscaled(posed.cameras[image.camera], downscale);
   view.normalized_from_camera = normalized_from_world.NormalizedFromCamera(image.world_from_camera);
+  CheckCameraCentre(view.normalized_from_camera.translation(), image.name);
   view.seed = static_cast<std::uint64_t>(&image - posed.images.data());
   view.rgba.resize(4 * plan.HeldOf(PixelsOf(view.camera)));
   for (std::int64_t k = 0; k < view.Held(); ++k) {

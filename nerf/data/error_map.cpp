@@ -16,9 +16,11 @@ constexpr std::int64_t kMostCells = 1 << 16;
 // The share that an error has in the running mean of its cell.
 constexpr float kNews = 0.1f;
 
-// What is wrong before anything is known; and the least that counts as wrong, so that a cell which
-// is right for the moment is drawn again some day.
-constexpr float kFirstError = 1e-2f, kLeastError = 1e-7f;
+constexpr float kUnknown = -1.0f;
+
+// The least that counts as wrong, so that a cell which is right for the moment is drawn again some
+// day; and the most, so that one cell does not take all the rays.
+constexpr float kLeastError = 1e-7f, kMostError = 1.0f;
 
 std::int64_t Cells(std::int64_t pixels, std::int64_t edge) { return (pixels + edge - 1) / edge; }
 
@@ -45,7 +47,7 @@ ErrorMap::ErrorMap(const std::vector<View>& views)
     }
     first_cell_.push_back(static_cast<std::int64_t>(size_.size()));
   }
-  error_.assign(size_.size(), kFirstError);
+  error_.assign(size_.size(), kUnknown);
   until_.resize(size_.size());
   Accumulate();
 }
@@ -81,7 +83,8 @@ ErrorMap::Pixel ErrorMap::Draw(std::uint64_t bits) const {
 void ErrorMap::Learn(std::span<const std::int64_t> cells, std::span<const float> squared_error) {
   for (std::size_t r = 0; r < cells.size(); ++r) {
     float& error = error_[cells[r]];
-    error += kNews * (squared_error[r] - error);
+    const float shown = std::min(squared_error[r], kMostError);
+    error = error == kUnknown ? shown : error + kNews * (shown - error);
   }
   Accumulate();
 }
@@ -93,14 +96,25 @@ void ErrorMap::SetErrors(std::span<const float> errors) {
         "has {}; train anew",
         error_.size(), edge_, errors.size());
   }
+  if (!std::ranges::all_of(errors, [](float e) { return e == kUnknown || (e >= 0 && e <= 1); })) {
+    throw sfm::InputError("the checkpoint's errors of photographs are none; train anew");
+  }
   std::ranges::copy(errors, error_.begin());
   Accumulate();
 }
 
 void ErrorMap::Accumulate() {
+  double known = 0, pixels = 0;
+  for (std::size_t i = 0; i < error_.size(); ++i) {
+    if (error_[i] == kUnknown) continue;
+    known += static_cast<double>(error_[i] * size_[i]);
+    pixels += static_cast<double>(size_[i]);
+  }
+  const float mean = pixels > 0 ? static_cast<float>(known / pixels) : 1.0f;
   double sum = 0;
   for (std::size_t i = 0; i < error_.size(); ++i) {
-    until_[i] = sum += static_cast<double>(std::max(error_[i], kLeastError) * size_[i]);
+    const float error = error_[i] == kUnknown ? mean : error_[i];
+    until_[i] = sum += static_cast<double>(std::max(error, kLeastError) * size_[i]);
   }
 }
 

@@ -19,7 +19,8 @@ class ErrorMap {
     std::int64_t index = 0;  // y * width + x
   };
 
-  // Starts with the same error everywhere. `views` must outlive it.
+  // Starts with the same error everywhere: a cell of which nothing is known counts as wrong as the
+  // others are in the mean. `views` must outlive it.
   explicit ErrorMap(const std::vector<View>& views);
 
   std::int64_t CellOf(const Pixel& pixel) const;
@@ -29,11 +30,14 @@ class ErrorMap {
   Pixel Draw(std::uint64_t bits) const;
 
   // Takes over what a batch has shown.
-  //   cells  [R]    squared_error  [R] of a ray, the mean over its channels
+  //   cells          [R]
+  //   squared_error  [R] of a ray, the mean over its channels; above 1, as of a sun in linear
+  //                  radiance, it counts as 1
   void Learn(std::span<const std::int64_t> cells, std::span<const float> squared_error);
 
-  // [cells], all of the map's state, to be kept and to be taken over. Throws sfm::InputError when
-  // the number differs: the photographs are others.
+  // [cells], all of the map's state, to be kept and to be taken over; -1 where nothing is known.
+  // Throws sfm::InputError when the number differs (the photographs are others) or when they are no
+  // errors.
   std::span<const float> Errors() const { return error_; }
   void SetErrors(std::span<const float> errors);
 

@@ -81,9 +81,9 @@ void ResampleIntervals(std::span<const float> edges, std::span<const float> weig
       ++i;
       own = static_cast<double>(weights[i]) * scale + even;
     }
-    const auto fraction =
-        own > 0 ? static_cast<float>(std::clamp((wanted - before) / own, 0.0, 1.0)) : 0.0f;
-    out[m] = edges[i] + fraction * (edges[i + 1] - edges[i]);
+    const auto fraction = static_cast<float>(std::clamp((wanted - before) / own, 0.0, 1.0));
+    // Rounded, the end of an interval may lie behind it.
+    out[m] = std::min(edges[i] + fraction * (edges[i + 1] - edges[i]), edges[i + 1]);
   }
   out.front() = edges.front();
   out.back() = edges.back();

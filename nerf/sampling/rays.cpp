@@ -7,13 +7,18 @@
 #include <span>
 #include <stdexcept>
 
+#include "sfm/input_error.h"
+
 namespace nerf {
-namespace {
 
-// Squares of what lies within it are far from overflowing.
-constexpr float kFarthestOrigin = 1e9f;
-
-}  // namespace
+void CheckCameraCentre(const Eigen::Vector3d& centre_in_normalized, const std::string& view) {
+  // Written so that what is no number does not pass.
+  if (centre_in_normalized.lpNorm<1>() <= static_cast<double>(kFarthestOrigin)) return;
+  throw sfm::InputError(
+      "{}: its camera stands {:.0e} times the size of the scene away from it; mend its pose or "
+      "unit",
+      view, centre_in_normalized.norm());
+}
 
 void CheckRays(const RayBatch& rays) {
   const auto finite = [](std::span<const float> values) {
@@ -25,9 +30,8 @@ void CheckRays(const RayBatch& rays) {
         std::hypot(static_cast<double>(direction[0]), static_cast<double>(direction[1]),
                    static_cast<double>(direction[2]));
     const char* wrong = nullptr;
-    const bool near = std::ranges::all_of(std::span(&rays.origin[3 * r], 3), [](float x) {
-      return std::fabs(x) <= kFarthestOrigin;
-    });
+    const bool near = std::ranges::all_of(std::span(&rays.origin[3 * r], 3),
+                                          [](float x) { return std::fabs(x) <= kFarthestOrigin; });
     if (!near) wrong = "origin is not finite, or farther out than 1e9";
     if (!(std::fabs(length - 1) <= 1e-3)) wrong = "direction is no unit vector";
     if (!finite({&rays.background[3 * r], 3})) wrong = "background is not finite";

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace nerf {
@@ -10,7 +12,7 @@ struct RayBatch {
   std::vector<float> origin;      // [R,3]
   std::vector<float> direction;   // [R,3] unit vectors
   std::vector<float> background;  // [R,3] what is seen where the ray meets nothing
-  std::vector<float> jitter;      // [R] in [0,1): where in its first step each ray starts
+  std::vector<float> jitter;      // [R] in [0,1]: where in its first step each ray starts
 
   std::int64_t Size() const { return static_cast<std::int64_t>(jitter.size()); }
   void Resize(std::int64_t rays) {
@@ -21,9 +23,15 @@ struct RayBatch {
   }
 };
 
+// The farthest that a ray may begin, in each coordinate: squares are then far from overflowing.
+inline constexpr float kFarthestOrigin = 1e9f;
+
+// Throws sfm::InputError naming the view whose camera stands farther out.
+void CheckCameraCentre(const Eigen::Vector3d& centre_in_normalized, const std::string& view);
+
 // Throws std::invalid_argument with the index of the first ray that is none: a number that is not
-// finite, an origin beyond 1e9, a direction that is no unit vector (to 1e-3), a jitter outside
-// [0,1]. What renders rays calls it once a batch.
+// finite, an origin beyond kFarthestOrigin, a direction that is no unit vector (to 1e-3), a jitter
+// outside [0,1]. What renders rays calls it once a batch.
 void CheckRays(const RayBatch& rays);
 
 // The samples of a batch of rays, packed ray after ray.

@@ -2,9 +2,11 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -16,10 +18,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "files are little endian");
 
-using json = nlohmann::ordered_json;
-
 constexpr char kMetadataKey[] = "__metadata__", kCrcKey[] = "crc32";
 constexpr std::size_t kCrcSize = 4;
+constexpr std::uint64_t kLargestHeader = 100'000'000;  // bytes, as safetensors has it
 
 constexpr std::array<std::pair<const char*, torch::Dtype>, 5> kTypes = {{{"F32", torch::kFloat},
                                                                          {"F64", torch::kDouble},
@@ -51,30 +52,62 @@ T ValueAt(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// A tensor as the header describes it. Throws json::exception, or std::runtime_error where shape,
-// type and place do not fit each other or the data.
-torch::Tensor TensorFrom(const json& entry, std::string_view data) {
+// What is wrong in a header, for ReadCheckpoint to catch.
+void Require(bool holds) {
+  if (!holds) throw std::runtime_error("header");
+}
+
+std::uint64_t Count(const nlohmann::json& number) {
+  Require(number.is_number_unsigned());
+  return number.get<std::uint64_t>();
+}
+
+// Where a tensor's bytes lie in the data.
+struct Place {
+  std::uint64_t begin = 0, end = 0;
+};
+Place PlaceOf(const nlohmann::json& entry) {
   const auto& offsets = entry.at("data_offsets");
-  const std::uint64_t begin = offsets.at(0), end = offsets.at(1);
-  if (begin > end || end > data.size()) throw std::runtime_error("data_offsets");
-  const std::string type = entry.at("dtype");
-  for (const auto& [name, dtype] : kTypes) {
-    if (type != name) continue;
-    std::vector<std::int64_t> shape;
-    std::uint64_t bytes = torch::elementSize(dtype);
-    for (const std::uint64_t size : entry.at("shape")) {
-      shape.push_back(static_cast<std::int64_t>(size));
-      // No product that is larger than the file can wrap around into one that fits.
-      if (size > data.size()) throw std::runtime_error("shape");
-      bytes *= size;
-      if (bytes > data.size()) throw std::runtime_error("shape");
-    }
-    if (bytes != end - begin) throw std::runtime_error("shape");
-    torch::Tensor tensor = torch::empty(shape, dtype);
-    std::memcpy(tensor.data_ptr(), data.data() + begin, bytes);
-    return tensor;
+  return {Count(offsets.at(0)), Count(offsets.at(1))};
+}
+
+// Tensors share no bytes and leave none out: the file is as large as what it asks for.
+void CheckPlaces(const nlohmann::json& header, std::uint64_t data_size) {
+  std::map<std::uint64_t, std::uint64_t> end_of;
+  for (const auto& [name, entry] : header.items()) {
+    if (name == kMetadataKey) continue;
+    const auto [begin, end] = PlaceOf(entry);
+    Require(begin <= end && end <= data_size);
+    if (begin < end) Require(end_of.emplace(begin, end).second);
   }
-  throw std::runtime_error("dtype");
+  std::uint64_t reached = 0;
+  for (const auto& [begin, end] : end_of) {
+    Require(begin == reached);
+    reached = end;
+  }
+  Require(reached == data_size);
+}
+
+// A tensor as the header describes it.
+torch::Tensor TensorFrom(const nlohmann::json& entry, std::string_view data) {
+  const auto [begin, end] = PlaceOf(entry);
+  const std::string type = entry.at("dtype");
+  const auto known =
+      std::ranges::find_if(kTypes, [&](const auto& pair) { return type == pair.first; });
+  Require(known != kTypes.end());
+  std::vector<std::int64_t> shape;
+  std::uint64_t bytes = torch::elementSize(known->second);
+  for (const auto& number : entry.at("shape")) {
+    const std::uint64_t size = Count(number);
+    // No product that is larger than the file may wrap around into one that fits.
+    Require(size <= data.size() && (size == 0 || bytes <= data.size() / size));
+    bytes *= size;
+    shape.push_back(static_cast<std::int64_t>(size));
+  }
+  Require(bytes == end - begin);
+  torch::Tensor tensor = torch::empty(shape, known->second);
+  if (bytes > 0) std::memcpy(tensor.data_ptr(), data.data() + begin, bytes);
+  return tensor;
 }
 
 [[noreturn]] void RefuseVersion(const std::filesystem::path& path, const std::string& version) {
@@ -87,7 +120,7 @@ torch::Tensor TensorFrom(const json& entry, std::string_view data) {
 }  // namespace
 
 void WriteCheckpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  json header;
+  nlohmann::ordered_json header;  // the metadata first, as others write it
   header[kMetadataKey] = {{"format", "nerf-cpu"},
                           {"version", std::to_string(kCheckpointVersion)},
                           {"meta", checkpoint.meta.dump()}};
@@ -122,6 +155,7 @@ Checkpoint ReadCheckpoint(const std::filesystem::path& path) {
   if (all.starts_with("NERFCKPT")) RefuseVersion(path, "2 or older");
   const bool whole = all.size() >= 8 + kCrcSize &&
                      ValueAt<std::uint64_t>(all, 0) <= all.size() - 8 - kCrcSize &&
+                     ValueAt<std::uint64_t>(all, 0) <= kLargestHeader &&
                      ValueAt<std::uint32_t>(all, all.size() - kCrcSize) ==
                          Crc32(all.substr(0, all.size() - kCrcSize));
   if (!whole) {
@@ -132,10 +166,11 @@ Checkpoint ReadCheckpoint(const std::filesystem::path& path) {
   const std::uint64_t header_size = ValueAt<std::uint64_t>(all, 0);
   const std::string_view data = all.substr(8 + header_size);
   try {
-    const json header = json::parse(all.substr(8, header_size));
-    const json& metadata = header.at(kMetadataKey);
+    const auto header = nlohmann::json::parse(all.substr(8, header_size));
+    const nlohmann::json& metadata = header.at(kMetadataKey);
     const std::string version = metadata.at("version");
     if (version != std::to_string(kCheckpointVersion)) RefuseVersion(path, version);
+    CheckPlaces(header, data.size());
     Checkpoint checkpoint;
     checkpoint.meta = nlohmann::json::parse(metadata.at("meta").get<std::string>());
     for (const auto& [name, entry] : header.items()) {

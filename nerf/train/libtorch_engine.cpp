@@ -141,6 +141,7 @@ RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
 }
 
 StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
+  if (batch.rays.Size() == 0) return {};  // the mean over nothing is no number
   const Evaluated out = Evaluate(batch.rays);
   const torch::Tensor target =
       TensorOf(batch.rgb, {batch.rays.Size(), 3}, out.pixels.rgb.scalar_type());

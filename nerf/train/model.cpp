@@ -42,6 +42,25 @@ SceneFacts SceneFromJson(const json& scene) {
   return facts;
 }
 
+// A hostile file may ask for tables of any size: what is made must be what the file holds.
+void CheckSizes(const Config& config, bool with_proposal, const Checkpoint& checkpoint) {
+  const auto check = [&](const std::string& name, std::int64_t numbers) {
+    const auto found = checkpoint.tensors.find(name);
+    if (found == checkpoint.tensors.end() || found->second.numel() != numbers) {
+      throw sfm::InputError("checkpoint: {} is not of the size that its configuration asks for",
+                            name);
+    }
+  };
+  const auto floats = [](const kernels::HashGridOptions& encoding) {
+    const kernels::HashGridLayout layout = kernels::MakeHashGridLayout(encoding);
+    return layout.entries * layout.features;
+  };
+  const std::int64_t resolution = config.occupancy.resolution;
+  check("field.hash_encoding.table", floats(config.encoding));
+  check(kOccupancyName, resolution * resolution * resolution);
+  if (with_proposal) check("proposal.hash_encoding.table", floats(config.proposal.encoding));
+}
+
 }  // namespace
 
 kernels::Precision PrecisionOf(const Config& config) {
@@ -98,8 +117,10 @@ void AddModel(const Model& model, Checkpoint& checkpoint) {
 
 Model ModelFromCheckpoint(const Checkpoint& checkpoint) {
   try {
-    Model model = MakeModel(ConfigFromJson(checkpoint.meta.at("config"), "checkpoint"),
-                            SceneFromJson(checkpoint.meta.at("scene")));
+    const Config config = ConfigFromJson(checkpoint.meta.at("config"), "checkpoint");
+    const SceneFacts scene = SceneFromJson(checkpoint.meta.at("scene"));
+    CheckSizes(config, UsesProposal(config.march, scene.has_alpha), checkpoint);
+    Model model = MakeModel(config, scene);
     for (const auto& [name, parameter] : NamedParameters(model)) {
       CopyTensor(checkpoint.tensors, name, parameter);
     }

@@ -174,9 +174,9 @@ void Trainer::State::Save() const {
   AddModel(model, checkpoint);
   optimizer.AddTo(checkpoint.tensors);
   if (const ErrorMap* errors = sampler.Errors()) {
-    const std::span<const float> cells = errors->Errors();
+    const std::vector<float> cells(errors->Errors().begin(), errors->Errors().end());
     checkpoint.tensors[kErrorsName] =
-        torch::tensor(at::ArrayRef<float>(cells.data(), cells.size()));
+        TensorOf(cells, {static_cast<std::int64_t>(cells.size())}, torch::kFloat).clone();
   }
   checkpoint.meta["step"] = step;
   checkpoint.meta["rays_per_batch"] = rays_per_batch;
@@ -198,17 +198,21 @@ Trainer::Trainer(const Checkpoint& checkpoint, const Dataset& data,
   try {
     state_->optimizer.LoadFrom(checkpoint.tensors);
     if (ErrorMap* errors = state_->sampler.Errors()) {
-      const auto found = checkpoint.tensors.find(kErrorsName);
-      if (found == checkpoint.tensors.end()) {
-        throw sfm::InputError("{}: holds no {}: it is of an earlier version; train again",
-                              CheckpointPath(run).string(), kErrorsName);
-      }
-      errors->SetErrors(Span<const float>(found->second));
+      std::vector<float> kept(errors->Errors().size());
+      CopyTensor(checkpoint.tensors, kErrorsName,
+                 torch::from_blob(kept.data(), {static_cast<std::int64_t>(kept.size())}));
+      errors->SetErrors(kept);
     }
     state_->step = checkpoint.meta.at("step");
     state_->rays_per_batch = checkpoint.meta.at("rays_per_batch");
     state_->training_seconds = checkpoint.meta.at("training_seconds");
     state_->validation_psnr = checkpoint.meta.at("validation_psnr");
+    const TrainOptions& options = state_->Options();
+    if (state_->step < 0 || state_->rays_per_batch < 1 ||
+        state_->rays_per_batch > options.max_rays_per_batch) {
+      throw sfm::InputError("{}: step or rays_per_batch are out of range; train again",
+                            CheckpointPath(run).string());
+    }
   } catch (const nlohmann::json::exception& error) {
     throw sfm::InputError("{}: {}; train again", CheckpointPath(run).string(), error.what());
   }

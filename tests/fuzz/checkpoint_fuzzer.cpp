@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "nerf/train/checkpoint.h"
+#include "nerf/train/model.h"
 #include "tests/fuzz/fuzz_reader.h"
 
 // The checksum keeps accidents out, not malice: here it is always right.
@@ -11,6 +12,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string bytes(reinterpret_cast<const char*>(data), size);
   bytes.append(reinterpret_cast<const char*>(&crc), sizeof crc);
   const auto file = nerf::fuzz::WriteFile("checkpoint.nerf", bytes);
-  nerf::fuzz::Expect([&] { nerf::ReadCheckpoint(file); });
+  nerf::fuzz::Expect([&] { nerf::ModelFromCheckpoint(nerf::ReadCheckpoint(file)); });
   return 0;
 }

@@ -62,6 +62,9 @@ TEST(Config, AValueOutOfRangeIsNamed) {
   EXPECT_THAT(ErrorOf("base", {"train.seed=-1"}),
               HasSubstr("train.seed must be a whole number, 0 or more"));
   EXPECT_THAT(ErrorOf("base", {"loss.kind=l7"}), HasSubstr("l7"));
+  EXPECT_THAT(ErrorOf("base", {"march.far_distance=2e8"}), HasSubstr("march.far_distance"));
+  EXPECT_THAT(ErrorOf("base", {"train.error_driven_share=1.5"}),
+              HasSubstr("train.error_driven_share"));
 }
 
 TEST(Config, AnAssignmentWithoutAValueIsExplained) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "nerf/data/camera.h"
 #include "nerf/sampling/random.h"
 #include "tests/support/input_error_of.h"
@@ -51,10 +53,25 @@ TEST(ErrorMap, LearnsTheMeanErrorOfACellAndForgetsTheOldOne) {
   const std::vector<std::int64_t> cells(100, 1);
   std::vector<float> errors(100);
   for (int i = 0; i < 100; ++i) errors[i] = i % 2 == 0 ? 0.3f : 0.5f;
-  const float untouched = map.Errors()[0];
   map.Learn(cells, errors);
   EXPECT_NEAR(map.Errors()[1], 0.4f, 0.02f);
-  EXPECT_EQ(map.Errors()[0], untouched);
+  EXPECT_EQ(map.Errors()[0], -1.0f) << "nothing is known of it";
+}
+
+// Corners that no lens reaches are never learned: they must not draw rays for good.
+TEST(ErrorMap, WhatIsNeverSeenCountsAsWrongAsTheOthers) {
+  const std::vector<View> views = {ViewOf(64, 16)};  // four cells
+  ErrorMap map(views);
+  const std::vector<std::int64_t> cells = {1, 2, 3};
+  map.Learn(cells, std::vector<float>{1e-5f, 2e-5f, 3e-5f});
+  EXPECT_NEAR(Draws(map, 8000)[0], 2000, 250);
+}
+
+TEST(ErrorMap, OneBrightCellDoesNotTakeAllTheRays) {
+  const std::vector<View> views = {ViewOf(32, 16)};
+  ErrorMap map(views);
+  map.Learn(std::vector<std::int64_t>{0, 1}, std::vector<float>{1e9f, 0.25f});
+  EXPECT_NEAR(Draws(map, 5000)[1], 1000, 150);
 }
 
 TEST(ErrorMap, NoCellIsGivenUp) {
@@ -75,8 +92,11 @@ TEST(ErrorMap, TakesLargerCellsWherePhotographsAreMany) {
 TEST(ErrorMap, RefusesTheStateOfOtherPhotographs) {
   const std::vector<View> views = {ViewOf(32, 16)};
   ErrorMap map(views);
-  EXPECT_THAT(test::InputErrorOf([&] { map.SetErrors(std::vector<float>(3)); }),
-              testing::HasSubstr("train anew"));
+  for (const std::vector<float>& errors :
+       {std::vector<float>(3), {0.1f, NAN}, {0.1f, -0.5f}, {INFINITY, 0.1f}}) {
+    EXPECT_THAT(test::InputErrorOf([&] { map.SetErrors(errors); }),
+                testing::HasSubstr("train anew"));
+  }
 }
 
 }  // namespace

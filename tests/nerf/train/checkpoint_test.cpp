@@ -83,6 +83,7 @@ TEST_F(CheckpointFile, AnotherVersionIsNamed) {
 // What Python's safetensors checks too: a shape that fits its bytes, places inside the data.
 TEST_F(CheckpointFile, AHeaderThatDoesNotFitItsDataIsRefused) {
   const std::string whole = sfm::ReadWholeFile(path_);
+  const std::string data = whole.substr(whole.size() - 60);  // 8 + 48 + 4 bytes
   for (const auto& [from, to] : {std::pair<std::string, std::string>{"[3,4]", "[4,4]"},
                                  {"[3,4]", "[3,9]"},
                                  {"\"F32\"", "\"F64\""},
@@ -90,11 +91,20 @@ TEST_F(CheckpointFile, AHeaderThatDoesNotFitItsDataIsRefused) {
                                  {"[8,56]", "[9,56]"},
                                  {"[8,56]", "[8,99]"},
                                  {"[8,56]", "[56,8]"},
+                                 {"[0,8]", "[8,16]"},
+                                 {"[0,8]", "[0,9]"},
+                                 {"[0,8]", "[-1,8]"},
+                                 {"[0,8]", "[0,1e300]"},
                                  {"\"meta\"", "\"mata\""}}) {
-    std::string changed = whole;
-    const std::size_t at = changed.find(from);
+    std::uint64_t size = 0;
+    std::memcpy(&size, whole.data(), sizeof size);
+    std::string header = whole.substr(8, size);
+    const std::size_t at = header.find(from);
     ASSERT_NE(at, std::string::npos) << from;
-    changed.replace(at, from.size(), to);
+    header.replace(at, from.size(), to);
+    size = header.size();
+    std::string changed(reinterpret_cast<const char*>(&size), sizeof size);
+    changed += header + data;
     WriteWithRightSum(changed);
     EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("cannot be understood")) << from << " " << to;
   }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -213,7 +214,8 @@ TEST(HardScene, AHundredThousandRecklessStepsEndWithAReasonAtWorst) {
     const test::ScratchFolder run;
     const Config config = Settings(
         100000, {rate, "encoding.levels=2", "encoding.log2_table_size=8", "occupancy.resolution=8",
-                 "train.max_rays_per_batch=2", "march.steps_per_unit=8", "march.far_distance=3"});
+                 "train.max_rays_per_batch=2", "march.steps_per_unit=8", "march.far_distance=3",
+                 "train.checkpoint_every=50"});
     Trainer trainer(config, capture.scene, capture.data, run.path());
     std::string reason = "finished";
     try {
@@ -224,9 +226,11 @@ TEST(HardScene, AHundredThousandRecklessStepsEndWithAReasonAtWorst) {
       EXPECT_THAT(reason, testing::HasSubstr("stage "));
     }
     RecordProperty(rate, reason);
-    for (const auto& [name, tensor] : ReadRunCheckpoint(run.path()).tensors) {
+    const Checkpoint last = ReadRunCheckpoint(run.path());
+    for (const auto& [name, tensor] : last.tensors) {
       EXPECT_TRUE(torch::isfinite(tensor).all().item<bool>()) << name << ", " << reason;
     }
+    EXPECT_TRUE(std::isfinite(PsnrOver(ModelFromCheckpoint(last), capture.data.train))) << reason;
   }
 }
 
