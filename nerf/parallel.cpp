@@ -10,6 +10,8 @@
 #include <fstream>
 #include <mutex>
 #include <string>
+#include <thread>
+#include <vector>
 
 namespace nerf {
 namespace {
@@ -48,6 +50,34 @@ class FirstFailure {
   std::mutex mutex_;
 };
 
+#if defined(__SANITIZE_THREAD__)
+// GCC's OpenMP does not tell the thread sanitizer when its threads wait for each other; plain
+// threads do.
+template <class F>
+void OnThreads(std::int64_t count, int threads, F&& f) {
+  std::atomic<std::int64_t> next = 0;
+  const auto run = [&] {
+    for (std::int64_t item = next++; item < count; item = next++) f(item);
+  };
+  std::vector<std::jthread> others;
+  for (int t = 1; t < threads; ++t) others.emplace_back(run);
+  run();
+}
+#else
+// Items 0 ... count - 1, the next to whichever thread is free; where there is one for each thread,
+// always the same to the same, whose cache may still hold what it worked on.
+template <class F>
+void OnThreads(std::int64_t count, int threads, F&& f) {
+  if (count <= threads) {
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (std::int64_t item = 0; item < count; ++item) f(item);
+  } else {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+    for (std::int64_t item = 0; item < count; ++item) f(item);
+  }
+}
+#endif
+
 }  // namespace
 
 int AvailableCores() {
@@ -77,18 +107,16 @@ void ParallelFor(std::int64_t count, std::int64_t grain,
     return;
   }
   FirstFailure failure;
-#pragma omp parallel for schedule(static, 1) num_threads(static_cast <int>(chunks))
-  for (std::int64_t k = 0; k < chunks; ++k) {
+  OnThreads(chunks, static_cast<int>(chunks), [&](std::int64_t k) {
     failure.Guard([&] { body(count * k / chunks, count * (k + 1) / chunks); });
-  }
+  });
   failure.Rethrow();
 }
 
 void ParallelForEach(std::int64_t count, const std::function<void(std::int64_t)>& body) {
   FirstFailure failure;
   const auto threads = static_cast<int>(std::clamp<std::int64_t>(count, 1, NumThreads()));
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (std::int64_t item = 0; item < count; ++item) failure.Guard([&] { body(item); });
+  OnThreads(count, threads, [&](std::int64_t item) { failure.Guard([&] { body(item); }); });
   failure.Rethrow();
 }
 

@@ -24,47 +24,15 @@ long double OpticalDepth(const Ray& ray) {
   return tau;
 }
 
-Ray RandomRay(int samples, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  Ray ray;
-  for (int i = 0; i < samples; ++i) {
-    ray.Add(std::exp(6 * uniform(generator) - 3), 0.1f * uniform(generator), uniform(generator),
-            uniform(generator), uniform(generator));
-  }
-  return ray;
-}
-
 double RandomRaysMatchTheOracle() {
   WorstError worst;
   for (unsigned seed = 0; seed < 50; ++seed) {
-    const Ray ray = RandomRay(64, seed);
+    const Ray ray = OneRay<float>::Random(64, seed);
     const auto pixel = ray.Composite();
     const reference::Pixel truth = reference::Composite(ray.Oracle());
     for (int c = 0; c < 3; ++c) worst.AddRelative(pixel.rgb[c], truth.rgb[c]);
     worst.AddRelative(pixel.opacity, truth.opacity);
     worst.AddRelative(pixel.depth, truth.depth);
-  }
-  return worst.Get();
-}
-
-double GradientsOfRandomRaysMatchTheOracle() {
-  WorstError worst;
-  const std::vector<float> g_rgb = {0.3f, -0.7f, 0.2f};
-  const long double g[3] = {g_rgb[0], g_rgb[1], g_rgb[2]};
-  for (unsigned seed = 0; seed < 50; ++seed) {
-    const Ray ray = RandomRay(48, seed);
-    const auto gradients = ray.Backward(g_rgb, 0.4f, -0.1f);
-    const auto truth = reference::GradientOfSigma(ray.Oracle(), g, 0.4f, -0.1f);
-    const auto T_end = reference::TransmittanceBefore(ray.Oracle(), ray.Size());
-    for (std::size_t i = 0; i < ray.Size(); ++i) {
-      worst.AddRelative(gradients.sigma[i], truth[i], 1e-6L);
-      const long double weight = reference::Weight(ray.Oracle(), i);
-      for (int c = 0; c < 3; ++c) {
-        worst.AddRelative(gradients.radiance[3 * i + c], weight * g[c], 1e-24L);
-      }
-    }
-    for (int c = 0; c < 3; ++c) worst.AddRelative(gradients.background[c], T_end * g[c], 1e-24L);
   }
   return worst.Get();
 }
@@ -78,16 +46,6 @@ double EmptySpaceShowsTheBackground() {
     for (int c = 0; c < 3; ++c) worst.Add(std::fabs(pixel.rgb[c] - empty.background[c]));
     worst.Add(pixel.opacity);
     worst.Add(pixel.depth);
-  }
-  return worst.Get();
-}
-
-double EmptySpaceCanStillLearn() {
-  WorstError worst;
-  Ray ray;
-  for (int i = 0; i < 8; ++i) ray.Add(0.0f, 0.1f);
-  for (const float g : ray.Backward(kRed).sigma) {
-    worst.AddRelative(g, 0.1f * (0.5L - static_cast<long double>(0.2f)));  // dt (c - b)
   }
   return worst.Get();
 }
@@ -166,7 +124,7 @@ double WeightsAreRightForEveryOpticalDepth() {
 double NoLightIsLostOrMade() {
   WorstError worst;
   for (unsigned seed = 0; seed < 50; ++seed) {
-    Ray ray = RandomRay(256, seed);
+    Ray ray = OneRay<float>::Random(256, seed);
     std::fill(ray.radiance.begin(), ray.radiance.end(), 1.0f);
     std::fill(ray.background.begin(), ray.background.end(), 1.0f);
     worst.Add(std::fabs(static_cast<double>(ray.Composite().rgb[0]) - 1.0));
@@ -210,7 +168,7 @@ double AHomogeneousSlabFollowsBeerAndLambert() {
 double TheUnitOfLengthDoesNotMatter() {
   WorstError worst;
   for (const float scale : {1e-3f, 0.5f, 1e4f}) {
-    Ray ray = RandomRay(64, 5), scaled = ray;
+    Ray ray = OneRay<float>::Random(64, 5), scaled = ray;
     for (std::size_t i = 0; i < ray.Size(); ++i) {
       scaled.sigma[i] /= scale;
       scaled.dt[i] *= scale;
@@ -220,70 +178,6 @@ double TheUnitOfLengthDoesNotMatter() {
     for (int c = 0; c < 3; ++c) worst.AddRelative(b.rgb[c], a.rgb[c]);
     worst.AddRelative(b.depth, a.depth * scale);
   }
-  return worst.Get();
-}
-
-// dC/dalpha_k = dC/dx_k e^{x_k} = T_k (c_k - C_behind), where e^{-x_k} is nearly gone.
-double AnOpaqueSampleStillTellsItsGradient() {
-  WorstError worst;
-  for (const float x : {1.0f, 10.0f, 20.0f, 40.0f, 80.0f}) {
-    Ray ray;
-    ray.Add(0.5f, 1.0f);
-    ray.Add(x, 1.0f, 0.9f);
-    ray.Add(2.0f, 1.0f, 0.1f);
-    const double T_k = std::exp(-0.5), T_behind = std::exp(-2.0);
-    const double behind = 0.1 * (1 - T_behind) + 0.2 * T_behind;
-    const double of_alpha =
-        static_cast<double>(ray.Backward(kRed).sigma[1]) * std::exp(static_cast<double>(x));
-    worst.AddRelative(of_alpha, T_k * (0.9 - behind));
-  }
-  return worst.Get();
-}
-
-double GradientsDeepInTheRayKeepTheirSign() {
-  WorstError worst;
-  Ray ray;
-  for (int i = 0; i < 40; ++i) ray.Add(4.0f, 0.1f, i % 3 == 0 ? 0.9f : 0.1f);
-  const long double g[3] = {1, 0, 0};
-  const auto truth = reference::GradientOfSigma(ray.Oracle(), g, 0, 0);
-  const auto gradients = ray.Backward(kRed);
-  worst.Require(reference::TransmittanceBefore(ray.Oracle(), 38) < 1e-5L);
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    worst.AddRelative(gradients.sigma[i], truth[i]);
-  }
-  return worst.Get();
-}
-
-double GradientsMatchCentralDifferences() {
-  WorstError worst;
-  std::mt19937 generator(11);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  OneRay<double> ray;
-  for (int i = 0; i < 12; ++i) {
-    ray.Add(3 * uniform(generator), 0.3 * uniform(generator), uniform(generator),
-            uniform(generator), uniform(generator));
-  }
-  const std::vector<double> g = {0.3, -0.7, 0.2};
-  const auto loss = [&] {
-    const auto pixel = ray.Composite();
-    return g[0] * pixel.rgb[0] + g[1] * pixel.rgb[1] + g[2] * pixel.rgb[2] + 0.4 * pixel.opacity -
-           0.1 * pixel.depth;
-  };
-  const auto gradients = ray.Backward(g, 0.4, -0.1);
-  const auto compare = [&](std::vector<double>& inputs, const std::vector<double>& gradient) {
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      const double at = inputs[i], h = 1e-5;
-      inputs[i] = at + h;
-      const double above = loss();
-      inputs[i] = at - h;
-      const double below = loss();
-      inputs[i] = at;
-      worst.AddRelative(gradient[i], (above - below) / (2 * h), 1e-2L);
-    }
-  };
-  compare(ray.sigma, gradients.sigma);
-  compare(ray.radiance, gradients.radiance);
-  compare(ray.background, gradients.background);
   return worst.Get();
 }
 
@@ -310,7 +204,7 @@ double DenormalLightIsNoTrouble() {
 double StoppingEarlyLeavesTheRestToTheBackground() {
   WorstError worst;
   for (unsigned seed = 0; seed < 50; ++seed) {
-    const Ray ray = RandomRay(200, seed);
+    const Ray ray = OneRay<float>::Random(200, seed);
     for (const double stop : {1e-1, 1e-2, 1e-4}) {
       const auto begin = ray.Begin();
       std::vector<std::int64_t> kept(1);
@@ -318,6 +212,7 @@ double StoppingEarlyLeavesTheRestToTheBackground() {
       Ray front = ray;
       for (auto* values : {&front.sigma, &front.dt, &front.t}) values->resize(kept[0]);
       front.radiance.resize(3 * kept[0]);
+      worst.Require(stop < 0.1 || front.Size() < ray.Size());  // the work stops, not only the sum
       const auto whole = ray.Composite(), stopped = front.Composite();
       // No colour here is above 1: what changes is at most the light that was left.
       for (int c = 0; c < 3; ++c) worst.Add(std::fabs(whole.rgb[c] - stopped.rgb[c]) / stop);
@@ -350,10 +245,7 @@ std::vector<NumericCase> CompositingCases() {
   const std::string relative = "relative to long double";
   return {
       {"RandomRaysMatchTheOracle", relative, 1e-6, false, RandomRaysMatchTheOracle},
-      {"GradientsOfRandomRaysMatchTheOracle", relative, 1e-6, false,
-       GradientsOfRandomRaysMatchTheOracle},
       {"EmptySpaceShowsTheBackground", "colour", 0, false, EmptySpaceShowsTheBackground},
-      {"EmptySpaceCanStillLearn", "gradient, relative", 1e-6, false, EmptySpaceCanStillLearn},
       {"ThinFogKeepsItsOpacity", "opacity, relative", 1e-5, false, ThinFogKeepsItsOpacity},
       {"AnOpaqueIntervalTakesAllTheWeight", "weight", 0, false, AnOpaqueIntervalTakesAllTheWeight},
       {"ExtremeDensitiesAndLengthsStayFinite", "finite or not", 0, false,
@@ -369,11 +261,6 @@ std::vector<NumericCase> CompositingCases() {
        AHomogeneousSlabFollowsBeerAndLambert},
       {"TheUnitOfLengthDoesNotMatter", "colour, depth, relative", 1e-6, false,
        TheUnitOfLengthDoesNotMatter},
-      {"AnOpaqueSampleStillTellsItsGradient", "gradient, relative", 1e-4, false,
-       AnOpaqueSampleStillTellsItsGradient},
-      {"GradientsDeepInTheRayKeepTheirSign", "gradient, relative", 1e-4, false,
-       GradientsDeepInTheRayKeepTheirSign},
-      {"GradientsMatchCentralDifferences", relative, 1e-7, false, GradientsMatchCentralDifferences},
       {"DenormalLightIsNoTrouble", "with flush-to-zero against without", 1e-37, false,
        DenormalLightIsNoTrouble},
       {"StoppingEarlyLeavesTheRestToTheBackground", "colour, parts of the light left", 1, false,

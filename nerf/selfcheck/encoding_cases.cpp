@@ -9,6 +9,7 @@
 #include "nerf/kernels/direction_encoding.h"
 #include "nerf/kernels/hash_encoding_tile.h"
 #include "nerf/selfcheck/numeric_case.h"
+#include "nerf/selfcheck/one_ray.h"
 #include "tests/reference/hash_encoding.h"
 
 namespace nerf {
@@ -158,8 +159,11 @@ double TinyOpacitiesAreNotCancelled() {
   for (const float x : {-5.0f, -10.0f, -14.9f}) {
     std::vector<float> sigma(16, x);
     kernels::TruncatedExp(sigma, 0.0f, 15.0f);
-    const double truth = -std::expm1(-std::exp(static_cast<double>(x)) * 1e-3);
-    worst.AddRelative(-std::expm1(-static_cast<double>(sigma[0]) * 1e-3), truth);
+    OneRay<float> ray;
+    ray.Add(sigma[0], 1e-3f);
+    const double depth = std::exp(static_cast<double>(x)) * static_cast<double>(ray.dt[0]);
+    worst.AddRelative(ray.Composite().opacity, -std::expm1(-depth));
+    worst.AddRelative(ray.Weights()[0], -std::expm1(-depth));
   }
   return worst.Get();
 }

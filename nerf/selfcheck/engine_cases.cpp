@@ -99,6 +99,7 @@ double StoppingEarlyCostsLessThanTheLightLeft() {
   ForEachEngine(20.0, Inside(kStop), [&](Engine& engine, KnownField&) {
     const RenderOutput out = engine.Render(batch.rays);
     const double opacity = -std::expm1(-20.0 * (kFar - kNear));
+    worst.Require(out.opacity[0] < 1);  // it did stop
     for (std::int64_t r = 0; r < batch.rays.Size(); ++r) {
       for (int c = 0; c < 3; ++c) {
         const double truth = opacity * kColour[c] + (1 - opacity) * Background(c);
@@ -127,6 +128,8 @@ double NoRaysGiveNothing() {
   ForEachEngine(1.0, Inside(), [&](Engine& engine, KnownField&) {
     const RenderOutput out = engine.Render(RayBatch());
     worst.Require(out.rgb.empty() && out.opacity.empty() && out.depth.empty());
+    const StepResult step = engine.AccumulateGradients(TargetBatch());
+    worst.Require(step.loss == 0 && step.shaded == 0);
   });
   return worst.Get();
 }

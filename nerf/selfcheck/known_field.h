@@ -22,7 +22,7 @@ class KnownField {
   // LibTorchEngine, then FusedEngine.
   const std::vector<std::shared_ptr<Engine>>& Engines() const { return engines_; }
   RadianceField& Field() { return *field_; }
-  // The gradients that a step left, as one row, and zeros where they stood.
+  // The gradients that a step left, as one row; none are left behind.
   std::vector<double> TakeGradients();
 
   // Rays from the origin to all sides, on the background (0.2, 0.4, 0.6), that aim at grey.

@@ -1,5 +1,6 @@
 // Small networks, in float and in bfloat16, and the optimiser's step.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -40,7 +41,8 @@ struct Trial {
   }
 
   struct Result {
-    std::vector<float> out, dL_din, dL_dw;
+    std::vector<float> out, dL_din;
+    std::vector<std::vector<float>> dL_dw;  // a layer: [outputs, inputs]
   };
   Result Run(Precision precision) const {
     TileMlp mlp(widths, precision);
@@ -57,8 +59,12 @@ struct Trial {
     result.out = Take(rows.back(), widths.back());
     std::fill(storage.back().begin(), storage.back().end(), 0.0f);
     Put(dL_dout, widths.back(), rows.back());
-    result.dL_dw.assign(mlp.GradientSize(), 0.0f);
-    mlp.Backward(samples, rows, result.dL_dw);
+    std::vector<float> gradients(mlp.GradientSize(), 0.0f);
+    mlp.Backward(samples, rows, gradients);
+    std::vector<float*> of_layer;
+    for (const auto& layer : weights) result.dL_dw.emplace_back(layer.size(), 0.0f);
+    for (auto& layer : result.dL_dw) of_layer.push_back(layer.data());
+    mlp.AddGradients(gradients, of_layer);
     result.dL_din = Take(rows.front(), widths.front());
     return result;
   }
@@ -105,32 +111,61 @@ double NetworksMatchPlainLoops() {
   return worst.Get();
 }
 
-// The derivative along the gradient's own direction, from both sides: dL = |dL/din|^2 h.
+// Central differences of the plain loops, by each input and by one weight in seven.
 double NetworkGradientsMatchDifferences() {
   WorstError worst;
+  constexpr double kStep = 1e-7;
   for (const std::vector<int>& widths : kWidths) {
     const Trial trial(widths);
     reference::Weights exact;
     for (const auto& layer : trial.weights) exact.emplace_back(layer.begin(), layer.end());
-    const auto dL_din = trial.Run(Precision::kFloat).dL_din;
-    for (std::int64_t s = 0; s < trial.samples; ++s) {
-      const auto loss = [&](int input, double moved) {
-        std::vector<double> x(&trial.inputs[s * widths.front()],
-                              &trial.inputs[s * widths.front()] + widths.front());
-        x[input] += moved;
-        const auto out = reference::Mlp(widths, exact, x);
-        double sum = 0;
+    std::vector<double> inputs(trial.inputs.begin(), trial.inputs.end());
+    const auto loss = [&] {
+      double sum = 0;
+      for (std::int64_t s = 0; s < trial.samples; ++s) {
+        const double* const x = &inputs[s * widths.front()];
+        const auto out = reference::Mlp(widths, exact, {x, x + widths.front()});
         for (std::size_t o = 0; o < out.size(); ++o) {
           sum += out[o] * static_cast<double>(trial.dL_dout[s * out.size() + o]);
         }
-        return sum;
-      };
-      for (int i = 0; i < widths.front(); ++i) {
-        constexpr double kStep = 1e-7;
-        const double numeric = (loss(i, kStep) - loss(i, -kStep)) / (2 * kStep);
-        worst.AddRelative(dL_din[s * widths.front() + i], numeric, LargestOf(dL_din));
+      }
+      return sum;
+    };
+    const auto slope = [&](double& at) {
+      const double before = at;
+      at = before + kStep;
+      const double above = loss();
+      at = before - kStep;
+      const double below = loss();
+      at = before;
+      return (above - below) / (2 * kStep);
+    };
+    const auto found = trial.Run(Precision::kFloat);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      worst.AddRelative(found.dL_din[i], slope(inputs[i]), LargestOf(found.dL_din));
+    }
+    for (std::size_t l = 0; l < exact.size(); ++l) {
+      for (std::size_t i = 0; i < exact[l].size(); i += 7) {
+        worst.AddRelative(found.dL_dw[l][i], slope(exact[l][i]), LargestOf(found.dL_dw[l]));
       }
     }
+  }
+  return worst.Get();
+}
+
+// A float becomes the bfloat16 nearest to it: eight bits, so an error of at most 2^-8, not 2^-7.
+double Bfloat16IsRoundedToTheNearest() {
+  WorstError worst;
+  std::vector<float> values(64);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto at = static_cast<float>(i);
+    values[i] = (i % 2 == 0 ? 1 : -1) * std::exp(at - 30) * (1 + at / 64 + 0.003f);
+  }
+  std::vector<std::uint32_t> pairs(32);
+  kernels::PairColumns(values.data(), 64, 1, 64, pairs.data());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::uint32_t bits = i % 2 == 0 ? pairs[i / 2] << 16 : pairs[i / 2] & 0xffff0000u;
+    worst.AddRelative(std::bit_cast<float>(bits), values[i]);
   }
   return worst.Get();
 }
@@ -140,9 +175,8 @@ double NetworksInBfloat16StayCloseToFloat() {
   for (const std::vector<int>& widths : kWidths) {
     const Trial trial(widths);
     const auto exact = trial.Run(Precision::kFloat), rounded = trial.Run(Precision::kBfloat16);
-    const double size = LargestOf(exact.out);
     for (std::size_t i = 0; i < exact.out.size(); ++i) {
-      worst.Add(std::fabs(static_cast<double>(exact.out[i] - rounded.out[i])) / size);
+      worst.Add(static_cast<double>(rounded.out[i] - exact.out[i]) / LargestOf(exact.out));
     }
   }
   return worst.Get();
@@ -211,6 +245,7 @@ std::vector<NumericCase> NetworkCases() {
        NetworkGradientsMatchDifferences},
       {"NetworksInBfloat16StayCloseToFloat", "output, parts of the largest", 2e-2, true,
        NetworksInBfloat16StayCloseToFloat},
+      {"Bfloat16IsRoundedToTheNearest", "relative", 0x1p-8, true, Bfloat16IsRoundedToTheNearest},
       {"NetworksDoNotHideNaN", "shown or not", 0, true, NetworksDoNotHideNaN},
       {"AdamFollowsThePublishedAlgorithm", "parameter, relative", 2e-5, true,
        AdamFollowsThePublishedAlgorithm},

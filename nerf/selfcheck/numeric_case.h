@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -19,17 +20,18 @@ struct NumericCase {
 };
 
 std::vector<NumericCase> CompositingCases();
+std::vector<NumericCase> CompositingGradientCases();
 std::vector<NumericCase> SamplingCases();
 std::vector<NumericCase> EncodingCases();
 std::vector<NumericCase> NetworkCases();
 std::vector<NumericCase> CameraCases();
 std::vector<NumericCase> EngineCases();
 
-// The largest of the errors it is told; one that is no number counts as infinite.
+// The largest size of the errors it is told; one that is no number counts as infinite.
 class WorstError {
  public:
   void Add(double error) {
-    if (!(error <= worst_)) worst_ = std::isnan(error) ? Infinity() : error;
+    if (!(std::fabs(error) <= worst_)) worst_ = std::isnan(error) ? Infinity() : std::fabs(error);
   }
   // |value - truth| as a part of the truth, of `floor` where the truth is smaller.
   void AddRelative(long double value, long double truth, long double floor = 0) {

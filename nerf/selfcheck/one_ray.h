@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -32,6 +34,19 @@ struct OneRay {
     dt.push_back(length);
     t.push_back(begin + length / 2);
     radiance.insert(radiance.end(), {r, g, b});
+  }
+
+  // Densities from e^-3 to e^3.
+  static OneRay Random(int samples, unsigned seed) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<Real> uniform(0, 1);
+    OneRay ray;
+    for (int i = 0; i < samples; ++i) {
+      const Real density = std::exp(6 * uniform(generator) - 3);
+      const Real length = uniform(generator) / 10;
+      ray.Add(density, length, uniform(generator), uniform(generator), uniform(generator));
+    }
+    return ray;
   }
 
   std::vector<std::int64_t> Begin() const { return {0, static_cast<std::int64_t>(Size())}; }

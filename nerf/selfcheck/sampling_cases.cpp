@@ -39,8 +39,9 @@ double SpeedOfContractionIsItsDerivative() {
     for (const Eigen::Vector3f& place : kDirections) {
       for (const Eigen::Vector3f& d : kDirections) {
         const float speed = ContractedSpeed(r * place, d);
+        // Straight outwards it is a difference of what it is sideways.
         worst.AddRelative(speed, reference::ContractedSpeed(Exact(r * place), Exact(d)),
-                          1e-3L / std::max(1.0f, r));
+                          1 / std::max(1.0f, r));
       }
     }
   }
@@ -84,8 +85,9 @@ double IntervalsRiseFromNearToFar() {
             EqualIntervals(OneRayFrom(origin, direction, jitter), 0, options, edges);
             worst.Require(edges.front() == static_cast<float>(near));
             worst.Require(edges.back() == static_cast<float>(far));
-            worst.Require(std::ranges::is_sorted(edges));
-            for (const float edge : edges) worst.RequireFinite(edge);
+            for (std::size_t i = 1; i < edges.size(); ++i) {
+              worst.Require(edges[i] > edges[i - 1] && std::isfinite(edges[i]));
+            }
           }
         }
       }
@@ -218,7 +220,7 @@ std::vector<NumericCase> SamplingCases() {
   return {
       {"ContractionIsRightFromZeroToTheEndOfFloat", "place", 3e-7, false,
        ContractionIsRightFromZeroToTheEndOfFloat},
-      {"SpeedOfContractionIsItsDerivative", "relative", 1e-3, false,
+      {"SpeedOfContractionIsItsDerivative", "parts of the speed sideways", 1e-3, false,
        SpeedOfContractionIsItsDerivative},
       {"ContractionCanBeUndone", "place, parts of r max(1, r)", 1e-6, false,
        ContractionCanBeUndone},

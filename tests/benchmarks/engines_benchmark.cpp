@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -60,48 +61,66 @@ struct Scene {
   TargetBatch batch;
 };
 
-// What this machine could do at most, all threads together, measured here: seconds a sample of the
-// default field takes when its networks run at the peak of fused multiply-adds in float, forward
-// and twice for the way back, and its entries are read and added from a table that is in the cache,
-// once forward and twice (read, written) on the way back. bfloat16 has twice that peak.
+// What one thread of this machine could do at most, measured here.
+struct Limits {
+  double flops = 0;  // fused multiply-adds count twice
+  double reads = 0;  // entries of four floats a second, of a table that is in the cache
+};
+Limits MeasureLimits() {
+  using Clock = std::chrono::steady_clock;
+  const auto rate_of = [](const auto& work) {  // units a second
+    double best = 0;
+    for (int attempt = 0; attempt < 5; ++attempt) {
+      const auto begin = Clock::now();
+      const double units = work();
+      const std::chrono::duration<double> elapsed = Clock::now() - begin;
+      best = std::max(best, units / elapsed.count());
+    }
+    return best;
+  };
+  Limits limits;
+  limits.flops = rate_of([] {
+    std::int64_t operations = 0;
+    benchmark::DoNotOptimize(benchmarks::FusedMultiplyAdds(3000000, operations));
+    return static_cast<double>(operations);
+  });
+  constexpr std::int64_t entries = 1 << 12;  // 64 KiB, in the second-level cache
+  std::vector<float> table(4 * entries, 1.0f);
+  std::vector<std::uint32_t> places(1 << 22);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    places[i] = static_cast<std::uint32_t>(i * 2654435761u % static_cast<std::uint64_t>(entries));
+  }
+  limits.reads = rate_of([&] {
+    benchmark::DoNotOptimize(benchmarks::SumEntries(table, places));
+    return static_cast<double>(places.size());
+  });
+  return limits;
+}
+
+// Seconds that a point takes at least, one thread: its networks at the peak of multiply-adds in
+// float, forward and twice for the way back; its entries, the corners of a cell on each level, read
+// forward, and read and written on the way back. bfloat16 has twice that peak.
+double LeastSeconds(const Limits& limits, int levels, std::initializer_list<const Mlp*> networks) {
+  double multiply_adds = 0;
+  for (const Mlp* network : networks) {
+    const std::vector<int> widths = network->Widths();
+    for (std::size_t l = 0; l + 1 < widths.size(); ++l) multiply_adds += widths[l] * widths[l + 1];
+  }
+  return 3 * 2 * multiply_adds / limits.flops + 3 * 8.0 * levels / limits.reads;
+}
+
+// Of a sample of the default field on all threads together, and of its share of what its ray asks
+// the proposal.
 double LeastSecondsASample(const Scene& scene) {
-  static const double seconds = [&] {
-    using Clock = std::chrono::steady_clock;
-    const auto rate_of = [](const auto& work) {  // of one thread, units a second
-      double best = 0;
-      for (int attempt = 0; attempt < 5; ++attempt) {
-        const auto begin = Clock::now();
-        const double units = work();
-        const std::chrono::duration<double> elapsed = Clock::now() - begin;
-        best = std::max(best, units / elapsed.count());
-      }
-      return best;
-    };
-    const double flops = rate_of([] {
-      std::int64_t operations = 0;
-      benchmark::DoNotOptimize(benchmarks::FusedMultiplyAdds(3000000, operations));
-      return static_cast<double>(operations);
-    });
-    const auto& options = scene.config.encoding;
-    constexpr std::int64_t entries = 1 << 12;  // 64 KiB, in the second-level cache
-    std::vector<float> table(4 * entries, 1.0f);
-    std::vector<std::uint32_t> places(1 << 22);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      places[i] = static_cast<std::uint32_t>(i * 2654435761u % static_cast<std::uint64_t>(entries));
-    }
-    const double reads = rate_of([&] {
-      benchmark::DoNotOptimize(benchmarks::SumEntries(table, places));
-      return static_cast<double>(places.size());
-    });
-    double multiply_adds = 0;
-    for (const Mlp* network : {&scene.field->DensityNetwork(), &scene.field->ColorNetwork()}) {
-      const std::vector<int> widths = network->Widths();
-      for (std::size_t l = 0; l + 1 < widths.size(); ++l)
-        multiply_adds += widths[l] * widths[l + 1];
-    }
-    return (3 * 2 * multiply_adds / flops + 3 * 8.0 * options.levels / reads) / NumThreads();
-  }();
-  return seconds;
+  static const Limits limits = MeasureLimits();
+  double seconds = LeastSeconds(limits, scene.config.encoding.levels,
+                                {&scene.field->DensityNetwork(), &scene.field->ColorNetwork()});
+  if (scene.proposal) {
+    const ProposalOptions& options = scene.config.proposal;
+    seconds += static_cast<double>(options.intervals) / options.samples *
+               LeastSeconds(limits, options.encoding.levels, {&scene.proposal->Network()});
+  }
+  return seconds / NumThreads();
 }
 
 // Items are samples with gradients.
