@@ -22,9 +22,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GradientScalingOptions, full_distance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OptimizerOptions, learning_rate, beta1, beta2, epsilon,
                                    weight_decay)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScheduleOptions, warmup_steps, final_factor)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, engine, precision, steps, samples_per_batch,
-                                   max_rays_per_batch, error_driven_share, seed, checkpoint_every,
-                                   validate_every)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainOptions, engine, precision, steps, time_budget, target_psnr,
+                                   samples_per_batch, max_rays_per_batch, error_driven_share, seed,
+                                   checkpoint_every, validate_every)
 namespace kernels {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HashGridOptions, levels, features, log2_table_size,
                                    base_resolution, max_resolution)

@@ -15,6 +15,12 @@ std::string FormatDuration(double seconds) {
   return fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
+std::string FormatSeconds(double seconds) {
+  if (seconds > 1e7) return "for ever";
+  if (seconds >= 99.5) return FormatDuration(seconds);
+  return fmt::format("{:.{}f} s", seconds, seconds < 9.95 ? 1 : 0);
+}
+
 bool ProgressLine::IsTerminal() { return isatty(STDERR_FILENO) == 1; }
 
 ProgressLine::ProgressLine(std::string title, std::int64_t total, std::int64_t start)

@@ -36,4 +36,7 @@ class ProgressLine {
 // "1:05:09", "2:03", "0:07".
 std::string FormatDuration(double seconds);
 
+// "0.4 s", "40 s", "2:03", and "for ever" for infinity.
+std::string FormatSeconds(double seconds);
+
 }  // namespace sfm

@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -17,7 +16,9 @@
 #include "nerf/data/image_io.h"
 #include "nerf/data/image_metrics.h"
 #include "nerf/output/contact_sheet.h"
+#include "nerf/peak_memory.h"
 #include "nerf/render/image_renderer.h"
+#include "nerf/stopwatch.h"
 #include "nerf/train/run_folder.h"
 #include "nerf/train/view_renderer.h"
 #include "sfm/atomic_file.h"
@@ -41,6 +42,26 @@ struct EvalArguments {
 struct Score {
   std::string name;
   double psnr = 0, ssim = 0, seconds = 0;
+};
+
+// What the views took, all together.
+struct Cost {
+  std::int64_t views = 0, pixels = 0, samples = 0;
+  StageSeconds seconds;
+  double reading = 0;  // seconds, of photographs
+
+  void Add(const RenderedView& view) {
+    ++views;
+    pixels += static_cast<std::int64_t>(view.rgb.width) * view.rgb.height;
+    samples += view.samples;
+    seconds.Add(view.seconds);
+  }
+  double SamplesPerRay() const {
+    return static_cast<double>(samples) / static_cast<double>(pixels);
+  }
+  double PerView(double seconds_of_all) const {
+    return seconds_of_all / static_cast<double>(views);
+  }
 };
 
 // Of the contact sheet: whoever looks at pictures looks at no more, and memory stays bounded.
@@ -68,7 +89,8 @@ Score MeanOf(const std::vector<Score>& scores) {
 }
 
 nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& arguments,
-                              const std::vector<Score>& scores, std::size_t left_out) {
+                              const std::vector<Score>& scores, const Cost& cost,
+                              std::size_t left_out) {
   const Score mean = MeanOf(scores);
   nlohmann::json images = nlohmann::json::array();
   for (const Score& s : scores) {
@@ -83,11 +105,19 @@ nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& argumen
           {"psnr", JsonNumber(mean.psnr)},
           {"ssim", mean.ssim},
           {"seconds_per_frame", mean.seconds},
+          {"stage_seconds_per_frame",
+           {{"sampling", cost.PerView(cost.seconds.sampling)},
+            {"encoding", cost.PerView(cost.seconds.encoding)},
+            {"networks", cost.PerView(cost.seconds.networks)},
+            {"compositing", cost.PerView(cost.seconds.compositing)},
+            {"reading_photographs", cost.PerView(cost.reading)}}},
+          {"samples_per_ray", cost.SamplesPerRay()},
+          {"peak_megabytes", PeakMegabytes()},
           {"left_out", left_out},
           {"images", images}};
 }
 
-void PrintTable(const std::vector<Score>& scores) {
+void PrintTable(const std::vector<Score>& scores, const Cost& cost) {
   std::size_t width = 5;
   for (const Score& s : scores) width = std::max(width, s.name.size());
   fmt::print("{:<{}}  {:>8}  {:>7}  {:>9}\n", "image", width, "PSNR dB", "SSIM", "seconds");
@@ -96,6 +126,11 @@ void PrintTable(const std::vector<Score>& scores) {
   };
   for (const Score& s : scores) row(s);
   row(MeanOf(scores));
+  fmt::print("{:.1f} samples a ray, {:.0f} MB at most\n", cost.SamplesPerRay(), PeakMegabytes());
+  if (cost.seconds.Sum() == 0) return;  // of a renderer that does not tell
+  fmt::print("of a frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, rest {:.2f} s\n",
+             cost.PerView(cost.seconds.sampling), cost.PerView(cost.seconds.encoding),
+             cost.PerView(cost.seconds.networks), cost.PerView(cost.seconds.compositing));
 }
 
 void RunEval(const EvalArguments& arguments) {
@@ -120,22 +155,26 @@ void RunEval(const EvalArguments& arguments) {
   sfm::ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
   std::vector<Score> scores;
   std::vector<ContactSheetRow> rows;
+  Cost cost;
   for (const sfm::PosedImage* image : images) {
     Image truth;
+    LapTimer reading;
     try {
       truth = OnWhite(LoadPhotograph(run.posed, *image, downscale));
     } catch (const sfm::InputError& error) {
       spdlog::warn("{}; left out", error.what());
       continue;
     }
-    const auto begin = std::chrono::steady_clock::now();
+    reading.Lap(cost.reading);
+    const Stopwatch watch;
     const RenderedView view =
         RenderView(*renderer, Downscaled(run.posed.cameras[image->camera], downscale),
                    scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
                    DisplayBackground(scene.has_alpha), scene.encoding);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    const double seconds = watch.Seconds();
+    cost.Add(view);
     const double psnr = Psnr(truth, view.rgb);
-    scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds.count()});
+    scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds});
     if (rows.size() < kMostRows) {
       rows.push_back({fmt::format("{}  {:.2f} dB", image->name, psnr), truth, view.rgb});
     }
@@ -152,13 +191,13 @@ void RunEval(const EvalArguments& arguments) {
   }
 
   const nlohmann::json result =
-      JsonFromScores(run, arguments, scores, images.size() - scores.size());
+      JsonFromScores(run, arguments, scores, cost, images.size() - scores.size());
   sfm::WriteFileAtomically(output / "eval.json", result.dump(2) + "\n");
   WriteImage(output / "contact_sheet.png", ContactSheet(rows));
   if (arguments.json) {
     fmt::print("{}\n", result.dump(2));
   } else {
-    PrintTable(scores);
+    PrintTable(scores, cost);
     fmt::print("{}\n", (output / "contact_sheet.png").string());
   }
 }

@@ -2,24 +2,22 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "nerf/commands/commands.h"
+#include "nerf/commands/shots.h"
 #include "nerf/commands/threads.h"
-#include "nerf/data/camera.h"
 #include "nerf/data/dataset.h"
 #include "nerf/data/image_io.h"
-#include "nerf/output/camera_path.h"
-#include "nerf/output/camera_path_json.h"
 #include "nerf/output/color_map.h"
 #include "nerf/output/video.h"
 #include "nerf/render/image_renderer.h"
 #include "nerf/sampling/rays.h"
+#include "nerf/train/dial.h"
 #include "nerf/train/run_folder.h"
 #include "nerf/train/view_renderer.h"
 #include "sfm/atomic_file.h"
@@ -34,105 +32,17 @@ namespace fs = std::filesystem;
 struct RenderArguments {
   std::string run;
   std::string output;
-  std::string image;  // name of a photograph
-  std::string pose;   // JSON file
-  std::string path;   // orbit, spiral, training, or JSON file
-  int frames = 120;
+  ShotOptions shots;
   std::optional<double> fps;
-  std::optional<int> downscale;
   std::string format = "png";
   bool depth = false;
   bool opacity = false;
   bool no_video = false;
   bool preview = false;
   double quality = 1;
+  std::optional<double> seconds_per_frame;
   int threads = 0;
 };
-
-// One picture to make, in the frame and units of the input.
-struct Shot {
-  std::string name;
-  Eigen::Isometry3d world_from_camera;
-  sfm::Camera camera;
-};
-
-struct ShotList {
-  std::vector<Shot> shots;
-  std::string folder;                       // below RUN/renders
-  std::optional<double> frames_per_second;  // of a film
-};
-
-// "train/r_0.png" -> "train_r_0", "../images/0001.jpg" -> "images_0001"
-std::string FileStem(const std::string& image_name) {
-  std::string stem;
-  for (const fs::path& part : fs::path(image_name).replace_extension().relative_path()) {
-    if (part == "..") continue;
-    stem += (stem.empty() ? "" : "_") + part.string();
-  }
-  return stem;
-}
-
-Shot ShotOf(const OpenedRun& run, const sfm::PosedImage& image, int downscale) {
-  return {FileStem(image.name), image.world_from_camera,
-          Downscaled(run.posed.cameras[image.camera], downscale)};
-}
-
-ShotList ShotsOfPath(const CameraPath& path, const std::string& folder, int downscale) {
-  ShotList list{{}, folder, path.frames_per_second};
-  for (const PathPose& pose : path.poses) {
-    list.shots.push_back({fs::path(FrameName(static_cast<int>(list.shots.size()))).stem().string(),
-                          pose.world_from_camera, Downscaled(pose.camera, downscale)});
-  }
-  return list;
-}
-
-// What the person asked for: one photograph's pose, a pose file, a path, or the held-out views.
-ShotList ChooseShots(const OpenedRun& run, const RenderArguments& arguments) {
-  const int trained = run.model.config.data.downscale;
-  const int downscale = arguments.downscale.value_or(trained);
-  if (!arguments.image.empty()) {
-    const auto found = std::ranges::find_if(run.posed.images, [&](const auto& image) {
-      return image.name == arguments.image || FileStem(image.name) == arguments.image;
-    });
-    if (found == run.posed.images.end()) {
-      throw sfm::InputError("--image {}: the run has no such photograph; names stand in {}",
-                            arguments.image, PosesPath(arguments.run).string());
-    }
-    return {{ShotOf(run, *found, downscale)}, "image", {}};
-  }
-  if (!arguments.pose.empty()) {
-    const PathPose pose = ReadPose(arguments.pose, run.posed);
-    return {{{fs::path(arguments.pose).stem().string(), pose.world_from_camera,
-              Downscaled(pose.camera, arguments.downscale.value_or(1))}},
-            "pose",
-            {}};
-  }
-  const auto& normalized_from_world = run.model.scene.normalized_from_world;
-  if (arguments.path == "orbit") {
-    return ShotsOfPath(OrbitPath(run.posed, normalized_from_world, arguments.frames), "orbit",
-                       downscale);
-  }
-  if (arguments.path == "spiral") {
-    return ShotsOfPath(SpiralPath(run.posed, normalized_from_world, arguments.frames), "spiral",
-                       downscale);
-  }
-  if (arguments.path == "training") {
-    return ShotsOfPath(TrainingPath(run.posed, arguments.frames), "training", downscale);
-  }
-  if (!arguments.path.empty()) {
-    return ShotsOfPath(ReadCameraPath(arguments.path), fs::path(arguments.path).stem().string(),
-                       arguments.downscale.value_or(1));
-  }
-  ShotList list{{}, "held-out", {}};
-  for (const sfm::PosedImage& image : run.posed.images) {
-    if (image.split == sfm::Split::kTest) list.shots.push_back(ShotOf(run, image, downscale));
-  }
-  if (list.shots.empty()) {
-    throw sfm::InputError("{}: the run holds out no images; use --path, --pose or --image",
-                          arguments.run);
-  }
-  return list;
-}
 
 void WriteShot(const RenderedView& view, const SceneFacts& scene, const RenderArguments& arguments,
                const fs::path& stem) {
@@ -152,22 +62,57 @@ void WriteShot(const RenderedView& view, const SceneFacts& scene, const RenderAr
   }
 }
 
+// Where the dial stands: as asked for, or where a frame takes no longer than asked for. Says what
+// it costs and loses, measured on the first of the views.
+double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArguments& arguments) {
+  if (!arguments.seconds_per_frame && arguments.quality == 1) return 1;
+  const Dial dial(
+      run.model, shot.camera,
+      run.model.scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera));
+  const DialPosition position = arguments.seconds_per_frame
+                                    ? dial.Choose(*arguments.seconds_per_frame)
+                                    : dial.Measure(arguments.quality);
+  const std::string loss = std::isinf(position.psnr)
+                               ? "the exact picture"
+                               : fmt::format("{:.1f} dB from the exact picture", position.psnr);
+  fmt::print("quality {:.2f}: about {} a frame, {}\n", position.quality,
+             sfm::FormatSeconds(position.seconds), loss);
+  std::fflush(stdout);
+  if (position.seconds > arguments.seconds_per_frame.value_or(position.seconds)) {
+    spdlog::warn("no quality is as fast as {} a frame; --downscale makes smaller pictures",
+                 sfm::FormatSeconds(*arguments.seconds_per_frame));
+  }
+  return position.quality;
+}
+
 void RunRender(const RenderArguments& arguments) {
   UseThreads(arguments.threads);
-  if (arguments.downscale && *arguments.downscale < 1) {
-    throw sfm::InputError("--downscale {}: use 1 or more", *arguments.downscale);
+  if (arguments.shots.downscale && *arguments.shots.downscale < 1) {
+    throw sfm::InputError("--downscale {}: use 1 or more", *arguments.shots.downscale);
+  }
+  if (arguments.seconds_per_frame && !(*arguments.seconds_per_frame > 0)) {
+    throw sfm::InputError("--seconds-per-frame {}: use more than 0", *arguments.seconds_per_frame);
+  }
+  if (!(arguments.quality >= 0 && arguments.quality <= 1)) {
+    throw sfm::InputError("--quality {}: use 0 (fast) to 1 (exact)", arguments.quality);
   }
   if (arguments.fps && !(*arguments.fps > 0 && *arguments.fps <= 1000)) {
     throw sfm::InputError("--fps {}: use more than 0, at most 1000", *arguments.fps);
   }
   const OpenedRun run = OpenRun(arguments.run);
-  const std::shared_ptr<RayRenderer> renderer = ViewRenderer(run.model, arguments.quality);
   const SceneFacts& scene = run.model.scene;
-  const ShotList list = ChooseShots(run, arguments);
+  const ShotList list = ChooseShots(run, arguments.shots, arguments.run);
   const fs::path output = arguments.output.empty()
                               ? fs::path(arguments.run) / "renders" / list.folder
                               : fs::path(arguments.output);
   sfm::MakeOutputFolder(output);
+  for (const Shot& shot : list.shots) {
+    CheckCameraCentre(
+        scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera).translation(),
+        shot.name);
+  }
+  const std::shared_ptr<RayRenderer> renderer =
+      ViewRenderer(run.model, ChooseQuality(run, list.shots.front(), arguments));
 
   std::int64_t pixels = 0, done = 0;
   for (const Shot& shot : list.shots) {
@@ -177,7 +122,6 @@ void RunRender(const RenderArguments& arguments) {
   for (const Shot& shot : list.shots) {
     const Eigen::Isometry3d normalized_from_camera =
         scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera);
-    CheckCameraCentre(normalized_from_camera.translation(), shot.name);
     const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
     for (const int factor : {8, 4}) {
       if (!arguments.preview) break;
@@ -212,18 +156,19 @@ void AddRenderCommand(CLI::App& app) {
   const auto arguments = std::make_shared<RenderArguments>();
   command->add_option("run", arguments->run, "run folder")->required();
   command->add_option("-o,--output", arguments->output, "where pictures go [RUN/renders/...]");
-  auto* image = command->add_option("--image", arguments->image, "the view of this photograph");
-  auto* pose = command->add_option("--pose", arguments->pose,
+  auto* image =
+      command->add_option("--image", arguments->shots.image, "the view of this photograph");
+  auto* pose = command->add_option("--pose", arguments->shots.pose,
                                    "one pose: JSON with transform_matrix or camera_to_world");
-  auto* path = command->add_option("--path", arguments->path,
+  auto* path = command->add_option("--path", arguments->shots.path,
                                    "orbit, spiral, training, or nerfstudio's camera_path.json");
   image->excludes(pose)->excludes(path);
   pose->excludes(path);
-  command->add_option("--frames", arguments->frames, "pictures along the path")
+  command->add_option("--frames", arguments->shots.frames, "pictures along the path")
       ->capture_default_str();
   command->add_option("--fps", arguments->fps, "frames a second of the film");
   command->add_option(
-      "--downscale", arguments->downscale,
+      "--downscale", arguments->shots.downscale,
       "reduce the camera by this factor [as trained; 1 for --pose and a path file]");
   command->add_option("--format", arguments->format, "png, jpg, or exr (linear)")
       ->check(CLI::IsMember({"png", "jpg", "exr"}))
@@ -234,16 +179,21 @@ void AddRenderCommand(CLI::App& app) {
   command->add_flag("--preview", arguments->preview,
                     "write each picture coarse first, then finer, then whole");
   command->add_flag("--no-video", arguments->no_video, "make no MP4 of a path");
+  auto* quality = command
+                      ->add_option("--quality", arguments->quality,
+                                   "0, fast, to 1, exact; what each costs stands in the README")
+                      ->capture_default_str();
   command
-      ->add_option("--quality", arguments->quality,
-                   "0, fast, to 1, exact; what each costs stands in the README")
-      ->capture_default_str();
+      ->add_option("--seconds-per-frame", arguments->seconds_per_frame,
+                   "the best quality whose frames take no longer")
+      ->excludes(quality);
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "Without --image, --pose or --path: the views of the held-out photographs.\n"
       "Examples:\n"
       "  nerf render runs/fox\n"
       "  nerf render runs/fox --path orbit --frames 60 --downscale 8\n"
+      "  nerf render runs/fox --path orbit --seconds-per-frame 0.3\n"
       "  nerf render runs/fox --pose pose.json --format exr --depth\n"
       "  nerf render runs/fox --path camera_path.json -o film");
   command->callback([arguments] { RunRender(*arguments); });

@@ -31,21 +31,28 @@ void PrintJson(const std::vector<CaseResult>& results, bool passed) {
   fmt::print("{}\n", nlohmann::json{{"passed", passed}, {"cases", rows}}.dump(2));
 }
 
-// A line a case: the worst of its SIMD levels, and that level's name.
+// A line a case, with its error at each SIMD level; of cases without vector code in the first
+// column.
 void PrintTable(const std::vector<CaseResult>& results) {
-  fmt::print("{:<42}  {:>8}  {:>8}  {:<6}  {:<4}  {}\n", "case", "bound", "error", "worst", "",
-             "measures");
+  std::vector<std::string> levels = {""};
+  for (const CaseResult& result : results) {
+    if (std::ranges::find(levels, result.level) == levels.end()) levels.push_back(result.level);
+  }
+  fmt::print("{:<41}  {:>7}", "case", "bound");
+  for (const std::string& level : levels) fmt::print("  {:>7}", level.empty() ? "plain" : level);
+  fmt::print("\n");
   for (auto first = results.begin(); first != results.end();) {
     const auto last = std::find_if(first, results.end(), [&](const CaseResult& result) {
       return result.numeric_case != first->numeric_case;
     });
-    // One that failed at any level comes first.
-    const auto& worst = *std::max_element(first, last, [](const auto& a, const auto& b) {
-      return a.Passed() != b.Passed() ? a.Passed() : a.error < b.error;
-    });
-    const NumericCase& c = *worst.numeric_case;
-    fmt::print("{:<42}  {:>8.1e}  {:>8.1e}  {:<6}  {:<4}  {}\n", c.name, c.bound, worst.error,
-               worst.level.empty() ? "-" : worst.level, worst.Passed() ? "ok" : "FAIL", c.error);
+    fmt::print("{:<41}  {:>7.1e}", first->numeric_case->name, first->numeric_case->bound);
+    for (const std::string& level : levels) {
+      const auto found = std::find_if(
+          first, last, [&level](const CaseResult& result) { return result.level == level; });
+      fmt::print("  {:>7}", found == last ? "" : fmt::format("{:.1e}", found->error));
+    }
+    const bool passed = std::all_of(first, last, [](const auto& r) { return r.Passed(); });
+    fmt::print("  {}\n", passed ? "ok" : "FAIL");
     first = last;
   }
 }
@@ -73,7 +80,7 @@ void AddSelfcheckCommand(CLI::App& app) {
   auto* command = app.add_subcommand(
       "selfcheck", "is the arithmetic right on this processor? in under a minute");
   const auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "print JSON, with a row for each SIMD level");
+  command->add_flag("--json", *json, "print JSON, with what each case measures");
   command->footer(
       "Measures the hard cases of the numerics against slow, exact forms, on every SIMD level "
       "that\n"

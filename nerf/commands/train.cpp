@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,14 +13,15 @@
 #include "nerf/commands/commands.h"
 #include "nerf/commands/interrupt.h"
 #include "nerf/commands/threads.h"
+#include "nerf/commands/training_input.h"
 #include "nerf/config.h"
-#include "nerf/data/camera.h"
 #include "nerf/data/dataset.h"
+#include "nerf/stopwatch.h"
+#include "nerf/train/budget_plan.h"
 #include "nerf/train/checkpoint.h"
 #include "nerf/train/run_folder.h"
 #include "nerf/train/trainer.h"
 #include "sfm/atomic_file.h"
-#include "sfm/colmap_runner.h"
 #include "sfm/input_error.h"
 #include "sfm/pose_input.h"
 #include "sfm/progress.h"
@@ -38,6 +40,8 @@ struct TrainArguments {
   bool preset_given = false;
   std::vector<std::string> assignments;
   std::optional<int> downscale;
+  std::optional<double> time_budget;  // seconds
+  std::optional<double> target_psnr;  // dB
   int threads = 0;
   bool resume = false;
 };
@@ -69,97 +73,71 @@ void RequireOwnFolder(const fs::path& run) {
   }
 }
 
-// "a, b, c and 14 more"
-std::string SomeOf(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 3;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
-  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
-  return text;
-}
-
-// Poses of the input: read where it brings them, found by COLMAP where it is a folder of photos.
-sfm::PosedImages FindPoses(const fs::path& input, const fs::path& run, int threads) {
-  const sfm::InputLocation location = sfm::FindInput(input);
-  if (location.kind != sfm::InputKind::kPhotos) return sfm::ReadPosedInput(location);
-  sfm::ColmapOptions colmap;
-  colmap.threads = threads;
-  sfm::ColmapReport report;
-  sfm::PosedImages posed = sfm::PosesFromPhotos(location.images, ColmapPath(run), colmap, &report);
-  if (!report.skipped.empty()) {
-    spdlog::warn("{} of {} photographs cannot be read and are left out", report.skipped.size(),
-                 report.skipped.size() + report.photos);
-  }
-  double seconds = 0;
-  for (const auto& [step, step_seconds] : report.seconds) seconds += step_seconds;
-  fmt::print(
-      "poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
-      report.registered, report.photos, report.points, report.mean_reprojection_error,
-      sfm::FormatDuration(seconds));
-  return posed;
-}
-
-// The first line, before anything large is read.
-void PrintPlan(const sfm::PosedImages& posed, const DataOptions& options, int threads) {
-  const DataPlan plan = PlanData(posed, options);
-  int width = 0, height = 0;
-  for (const auto& image : posed.images) {
-    const sfm::Camera camera = Downscaled(posed.cameras[image.camera], options.downscale);
-    width = std::max(width, camera.width);
-    height = std::max(height, camera.height);
-  }
-  const std::string share =
-      plan.held == plan.pixels
-          ? ""
-          : fmt::format(", of every {:.3g} pixels one at random (data.memory_mb allows no more)",
-                        static_cast<double>(plan.pixels) / static_cast<double>(plan.held));
-  fmt::print(
-      "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels; {} MB of "
-      "pixels held{}\n",
-      threads, plan.train, plan.validation, plan.held_out, width, height, plan.Bytes() >> 20,
-      share);
-  std::fflush(stdout);
-}
-
-void WarnOfMissing(const sfm::PosedImages& posed) {
-  if (posed.missing.empty()) return;
-  spdlog::warn("{}: {} of {} images are missing and left out: {}", posed.source.string(),
-               posed.missing.size(), posed.missing.size() + posed.images.size(),
-               SomeOf(posed.missing));
-}
-
-Dataset Load(const sfm::PosedImages& posed, const DataOptions& options,
-             const sfm::SceneNormalization& normalized_from_world) {
-  Dataset data = LoadDataset(posed, options, normalized_from_world);
-  if (!data.skipped.empty()) {
-    for (const std::string& reason : data.skipped) spdlog::warn("{}", reason);
-    spdlog::warn("{} images could not be read and are left out", data.skipped.size());
-  }
-  return data;
-}
-
-void Report(const TrainSummary& summary, const fs::path& run) {
+void Report(const TrainSummary& summary, const TrainOptions& options, const fs::path& run) {
   const std::string psnr = summary.validation_psnr > 0
                                ? fmt::format(", validation {:.2f} dB", summary.validation_psnr)
                                : "";
   if (summary.finished) {
-    fmt::print("trained {} steps in {:.1f} s{}\n{}\nnext: nerf eval {}\n", summary.step,
-               summary.training_seconds, psnr, run.string(), run.string());
+    fmt::print("trained {} steps in {:.1f} s{}\n", summary.step, summary.training_seconds, psnr);
+    if (options.target_psnr > 0) {
+      fmt::print("{} dB {}\n", options.target_psnr,
+                 summary.reached_target ? "are reached" : "were not reached");
+    }
+    const auto last = summary.curve.SecondsOfLast(0.5), next = summary.curve.SecondsForNext(0.5);
+    if (last && next) {
+      fmt::print("the last 0.5 dB cost {}; 0.5 dB more would take about {} more\n",
+                 sfm::FormatSeconds(*last), sfm::FormatSeconds(*next));
+    }
+    fmt::print("{}\nnext: nerf eval {}\n", run.string(), run.string());
   } else {
     fmt::print("stopped at step {}, saved{}\ngo on with: nerf train --resume -o {}\n", summary.step,
                psnr, run.string());
   }
 }
 
-void StartRun(const TrainArguments& arguments, const fs::path& run, int threads) {
-  if (arguments.input.empty()) throw sfm::InputError("nerf train: name an INPUT");
+// What --set and the flags beside it say.
+std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
   std::vector<std::string> assignments = arguments.assignments;
   if (arguments.downscale) {
     assignments.push_back(fmt::format("data.downscale={}", *arguments.downscale));
   }
-  const Config config = LoadConfig(arguments.preset, assignments);
+  if (arguments.time_budget) {
+    assignments.push_back(fmt::format("train.time_budget={}", *arguments.time_budget));
+  }
+  if (arguments.target_psnr) {
+    assignments.push_back(fmt::format("train.target_psnr={}", *arguments.target_psnr));
+  }
+  return assignments;
+}
+
+void WriteConfig(const Config& config, const fs::path& run) {
+  sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
+}
+
+// A target is measured on photographs that training does not see.
+void RequireValidation(const sfm::PosedImages& posed, const Config& config) {
+  const auto validates = [](const auto& image) { return image.split == sfm::Split::kValidation; };
+  if (config.train.target_psnr == 0 || std::ranges::any_of(posed.images, validates)) return;
+  throw sfm::InputError(
+      "train.target_psnr is measured on validation photographs, and there are none: set "
+      "data.validation_images to 1 or more, and take 16 photographs at least");
+}
+
+// Seconds of the time budget that are gone. Finding poses cannot be bounded: training gets at least
+// half of what was asked for.
+double SpentOf(const Config& config, const Stopwatch& watch) {
+  const double budget = config.train.time_budget, spent = watch.Seconds();
+  if (budget == 0 || spent <= budget / 2) return spent;
+  spdlog::warn("{} of the time budget were gone before training; it still gets {}",
+               sfm::FormatSeconds(spent), sfm::FormatSeconds(budget / 2));
+  return budget / 2;
+}
+
+void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
+              const Stopwatch& watch) {
+  if (arguments.input.empty()) throw sfm::InputError("nerf train: name an INPUT");
+  const std::vector<std::string> assignments = AssignmentsOf(arguments);
+  Config config = LoadConfig(arguments.preset, assignments);
   RequireOwnFolder(run);
   sfm::FindInput(arguments.input);  // a wrong input must not leave an empty run behind
   sfm::MakeOutputFolder(run);
@@ -167,27 +145,42 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads)
   sfm::PosedImages found = FindPoses(arguments.input, run, threads);
   WarnOfMissing(found);
   AssignSplits(found, config.data);
+  RequireValidation(found, config);
   SceneFacts scene;
   scene.normalized_from_world = sfm::NormalizeScene(found);
   // First, for it marks the folder as a run's own.
-  sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
+  WriteConfig(config, run);
   sfm::WriteTransformsJson(found, PosesPath(run));
   // Read back, so that a run which resumes starts from the same numbers to the last bit.
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
 
-  PrintPlan(posed, config.data, threads);
-  const Dataset data = Load(posed, config.data, scene.normalized_from_world);
+  PrintDataPlan(posed, config.data, threads);
+  const Dataset data = LoadOrWarn(posed, config.data, scene.normalized_from_world);
   scene.encoding = data.encoding;
   scene.has_alpha = data.has_alpha;
-  Trainer trainer(config, scene, data, run);
-  Report(trainer.Run(StopOnInterrupt()), run);
+  const double spent = SpentOf(config, watch);
+  auto trainer = std::make_unique<Trainer>(config, scene, data, run, spent);
+  if (config.train.time_budget > 0 && !arguments.preset_given) {
+    const double left = config.train.time_budget - spent;
+    const BudgetPlan plan = PlanBudget(*trainer, left);
+    fmt::print("time budget {}: preset {}, about {:.0f} steps\n",
+               sfm::FormatDuration(config.train.time_budget), plan.preset, plan.steps);
+    std::fflush(stdout);
+    if (plan.preset != arguments.preset) {
+      config = LoadConfig(plan.preset, assignments);
+      WriteConfig(config, run);
+      trainer = std::make_unique<Trainer>(config, scene, data, run, SpentOf(config, watch));
+    }
+  }
+  Report(trainer->Run(StopOnInterrupt()), config.train, run);
 }
 
-void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads) {
-  if (!arguments.assignments.empty() || arguments.downscale || arguments.preset_given) {
+void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads,
+               const Stopwatch& watch) {
+  if (!AssignmentsOf(arguments).empty() || arguments.preset_given) {
     throw sfm::InputError(
-        "--resume goes on with the run's own configuration; leave --config, --set and --downscale "
-        "away");
+        "--resume goes on with the run's own configuration; leave --config, --set, --downscale, "
+        "--time-budget and --target-psnr away");
   }
   const Checkpoint checkpoint = ReadRunCheckpoint(run);
   const Model model = ModelFromCheckpoint(checkpoint);
@@ -197,10 +190,10 @@ void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads
   }
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
   WarnOfMissing(posed);
-  PrintPlan(posed, model.config.data, threads);
-  const Dataset data = Load(posed, model.config.data, model.scene.normalized_from_world);
-  Trainer trainer(checkpoint, data, run);
-  Report(trainer.Run(StopOnInterrupt()), run);
+  PrintDataPlan(posed, model.config.data, threads);
+  const Dataset data = LoadOrWarn(posed, model.config.data, model.scene.normalized_from_world);
+  Trainer trainer(checkpoint, data, run, watch.Seconds());
+  Report(trainer.Run(StopOnInterrupt()), model.config.train, run);
 }
 
 }  // namespace
@@ -219,20 +212,32 @@ void AddTrainCommand(CLI::App& app) {
       ->allow_extra_args(false)
       ->take_all();
   command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
+  command
+      ->add_option("--time-budget", arguments->time_budget,
+                   "end after this time: 90, 30s, 2m, 1h; chooses the preset, unless --config does")
+      ->transform(
+          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
+  command->add_option("--target-psnr", arguments->target_psnr,
+                      "end when the validation photographs reach so many dB");
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--resume", arguments->resume, "go on with the run in -o");
   command->footer(
       "Ctrl-C saves and leaves; --resume goes on where the run stopped, bit for bit with the same\n"
-      "number of threads.\n"
+      "number of threads. A time budget counts from the command's start, poses and reading with "
+      "it;\n"
+      "runs with one end by the clock, and are not the same to the bit.\n"
       "Examples:\n"
       "  nerf train photos/fox -o runs/fox --downscale 4\n"
       "  nerf train photos/fox/transforms.json --config fast --set train.steps=2000\n"
+      "  nerf train photos/fox/transforms.json --time-budget 2m --target-psnr 30\n"
       "  nerf train --resume -o runs/fox");
   command->callback([arguments, preset] {
+    const Stopwatch watch;
     arguments->preset_given = preset->count() > 0;
     const int threads = UseThreads(arguments->threads);
     const fs::path run = RunFolder(*arguments);
-    arguments->resume ? ResumeRun(*arguments, run, threads) : StartRun(*arguments, run, threads);
+    arguments->resume ? ResumeRun(*arguments, run, threads, watch)
+                      : StartRun(*arguments, run, threads, watch);
   });
 }
 

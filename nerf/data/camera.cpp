@@ -104,6 +104,13 @@ sfm::Camera Downscaled(const sfm::Camera& camera, int factor) {
   return result;
 }
 
+sfm::Camera RowsOf(const sfm::Camera& camera, int top, int height) {
+  sfm::Camera result = camera;
+  result.height = height;
+  result.params[sfm::FirstDistortionParam(camera.model) - 1] -= top;  // the principal point's y
+  return result;
+}
+
 double FocalLength(const sfm::Camera& camera) { return sfm::FocalLengths(camera).mean(); }
 
 sfm::Camera PinholeFromFov(int width, int height, double vertical_fov) {

@@ -26,6 +26,9 @@ std::optional<Eigen::Vector2d> PixelFromPoint(const sfm::Camera& camera,
 // floor(width / factor) and focal lengths and principal point are divided by factor.
 sfm::Camera Downscaled(const sfm::Camera& camera, int factor);
 
+// The camera of a part of the image: `height` whole rows from row `top` on.
+sfm::Camera RowsOf(const sfm::Camera& camera, int top, int height);
+
 // Mean focal length in pixels, and the principal point.
 double FocalLength(const sfm::Camera& camera);
 using sfm::PrincipalPoint;

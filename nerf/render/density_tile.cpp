@@ -10,6 +10,7 @@
 #include "nerf/kernels/hash_encoding_tile.h"
 #include "nerf/kernels/matrix_product.h"
 #include "nerf/parallel.h"
+#include "nerf/stopwatch.h"
 
 namespace nerf {
 
@@ -75,15 +76,18 @@ void TileDensity::Refresh(std::vector<float> level_weights) {
 }
 
 void TileDensity::ContractedDensity(std::span<const float> positions, DensityTile& tile) const {
+  LapTimer timer;
   const auto samples = static_cast<std::int64_t>(positions.size() / 3);
   tile.activations.Resize(network_, samples);
   kernels::HashEncodeTile(hash_.Layout(), Span<const float>(hash_.Table()).data(), positions.data(),
                           samples, level_weights_, tile.activations.rows[0], Row());
+  timer.Lap(tile.seconds.encoding);
   network_.Forward(samples, tile.activations.rows);
   tile.sigma.resize(samples);
   for (std::int64_t i = 0; i < samples; ++i) tile.sigma[i] = *Output(tile, i);
   kernels::TruncatedExp(tile.sigma, static_cast<float>(kLogDensityBias),
                         static_cast<float>(kExpLimit));
+  timer.Lap(tile.seconds.networks);
 }
 
 void TileDensity::Density(std::span<const float> positions, DensityTile& tile) const {
@@ -114,14 +118,17 @@ void TileDensity::Keep(std::span<const std::int64_t> kept, DensityTile& tile) co
 void TileDensity::Backward(std::int64_t samples, std::span<const float> positions,
                            std::span<const float> dL_dsigma, DensityTile& tile,
                            DensityGradients& gradients) const {
+  LapTimer timer;
   for (std::int64_t i = 0; i < samples; ++i) {
     *Output(tile, i) = dL_dsigma[i] * tile.sigma[i];  // sigma = exp(output) * shrinkage
   }
   network_.Backward(samples, tile.activations.rows, gradients.network);
+  timer.Lap(tile.seconds.networks);
   const float* const encoded = tile.activations.rows[0];
   gradients.position.insert(gradients.position.end(), positions.begin(),
                             positions.begin() + 3 * samples);
   gradients.dL_dencoded.insert(gradients.dL_dencoded.end(), encoded, encoded + samples * Row());
+  timer.Lap(tile.seconds.encoding);
 }
 
 void TileDensity::Clear(DensityGradients& gradients) const {

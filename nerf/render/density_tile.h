@@ -8,6 +8,7 @@
 #include "nerf/field/hash_encoding.h"
 #include "nerf/field/mlp.h"
 #include "nerf/kernels/mlp.h"
+#include "nerf/stage_seconds.h"
 
 namespace nerf {
 
@@ -23,6 +24,7 @@ struct TileRows {
 struct DensityTile {
   std::vector<float> sigma;  // [S]
   TileRows activations;
+  StageSeconds seconds;  // so far, for encoding and networks
 };
 
 // Sums of gradients of one thread; LibTorch's tensors get them once a batch.

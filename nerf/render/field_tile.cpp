@@ -7,6 +7,7 @@
 #include "nerf/field/direction_encoding.h"
 #include "nerf/kernels/activations.h"
 #include "nerf/kernels/matrix_product.h"
+#include "nerf/stopwatch.h"
 
 namespace nerf {
 
@@ -26,6 +27,7 @@ void TileField::Refresh() {
 
 void TileField::Radiance(std::int64_t samples, std::span<const std::int64_t> ray,
                          std::span<const float> directions, FieldTile& tile) const {
+  LapTimer timer;
   tile.color.Resize(color_, samples);
   const int in_row = PaddedWidth(color_.Width(0));
   std::array<float, kDirectionFeatures> view{};
@@ -50,11 +52,13 @@ void TileField::Radiance(std::int64_t samples, std::span<const std::int64_t> ray
   } else {
     kernels::TruncatedExp(tile.radiance, 0.0f, static_cast<float>(kExpLimit));
   }
+  timer.Lap(tile.density.seconds.networks);
 }
 
 void TileField::Backward(std::int64_t samples, std::span<const float> positions,
                          std::span<const float> dL_dsigma, std::span<const float> dL_dradiance,
                          FieldTile& tile, FieldGradients& gradients) const {
+  LapTimer timer;
   const bool sigmoid = field_->Encoding() == ColorEncoding::kSrgb;
   float* const dL_dout = tile.color.rows[color_.Layers()];
   for (std::int64_t i = 0; i < samples; ++i) {
@@ -69,6 +73,7 @@ void TileField::Backward(std::int64_t samples, std::span<const float> positions,
     std::copy_n(tile.color.rows[0] + i * in_row, geometry_features_,
                 density_.Output(tile.density, i) + 1);
   }
+  timer.Lap(tile.density.seconds.networks);
   density_.Backward(samples, positions, dL_dsigma, tile.density, gradients.density);
 }
 

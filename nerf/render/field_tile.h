@@ -12,7 +12,7 @@ namespace nerf {
 
 // What the field says of the samples of a tile, and what it needs for the way back.
 struct FieldTile {
-  DensityTile density;
+  DensityTile density;          // whose seconds are those of the colours too
   std::vector<float> radiance;  // [S,3]
   TileRows color;
 };

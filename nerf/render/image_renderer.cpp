@@ -55,7 +55,9 @@ RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
                         const std::function<void(std::int64_t)>& progress) {
   RenderedView view = {Image(camera.width, camera.height, 3, encoding),
                        Image(camera.width, camera.height, 1, ColorEncoding::kLinear),
-                       Image(camera.width, camera.height, 1, ColorEncoding::kLinear)};
+                       Image(camera.width, camera.height, 1, ColorEncoding::kLinear),
+                       0,
+                       {}};
   const std::int64_t across = (camera.width + kBlock - 1) / kBlock;
   const std::int64_t blocks = across * ((camera.height + kBlock - 1) / kBlock);
   const std::int64_t all = static_cast<std::int64_t>(camera.width) * camera.height;
@@ -68,6 +70,8 @@ RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
     const bool any = std::ranges::find(tile.valid, 1) != tile.valid.end();
     LendRays(tile);
     const RenderOutput out = any ? renderer.Render(tile.rays) : RenderOutput{};
+    view.samples += out.samples;
+    view.seconds.Add(out.seconds);
     for (std::size_t r = 0; r < pixels.size(); ++r) {
       const std::int64_t pixel = pixels[r];
       float* const rgb = &view.rgb.pixels[3 * pixel];

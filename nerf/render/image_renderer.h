@@ -14,6 +14,8 @@ struct RenderedView {
   Image rgb;      // 3 channels
   Image opacity;  // 1 channel, [0,1]
   Image depth;    // 1 channel, distance along the ray in normalized scene units, 0 where undefined
+  std::int64_t samples = 0;  // points at which the field was evaluated
+  StageSeconds seconds;
 };
 
 // Renders every pixel of a camera, a tile of rays at a time, so that memory does not grow with the

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "nerf/parallel.h"
+#include "nerf/stopwatch.h"
 
 namespace nerf {
 namespace {
@@ -45,6 +47,7 @@ struct PacketRenderer::Tile {
   std::vector<float> kept_weight;
   FieldTile field;
   std::int64_t evaluated = 0;
+  double sampling_seconds = 0;
 };
 
 PacketRenderer::PacketRenderer(std::shared_ptr<RadianceField> field,
@@ -60,8 +63,12 @@ PacketRenderer::PacketRenderer(std::shared_ptr<RadianceField> field,
 // Sets the rays of a tile at their first samples.
 void PacketRenderer::Begin(const RayBatch& rays, std::int64_t first, std::int64_t last,
                            Tile& tile) const {
-  placement_.Place(rays, first, last, tile.placed);
+  LapTimer timer;
   tile.evaluated = 0;
+  tile.sampling_seconds = 0;
+  tile.field.density.seconds = {};
+  placement_.Place(rays, first, last, tile.placed);
+  timer.Lap(tile.sampling_seconds);
   tile.rays.assign(last - first, {});
   tile.alive.clear();
   for (std::int64_t k = 0; k < last - first; ++k) {
@@ -82,7 +89,9 @@ void PacketRenderer::BeginMissed(const RayBatch& rays, std::int64_t first, Tile&
       tile.alive.push_back(static_cast<std::int64_t>(k));
     }
   }
+  LapTimer timer;
   placement_.PlaceAlone(rays, first, tile.alive, tile.placed);
+  timer.Lap(tile.sampling_seconds);
   for (const std::int64_t k : tile.alive) {
     const auto [begin, end] = tile.placed.of_ray[k];
     tile.rays[k] = {};
@@ -188,8 +197,10 @@ RenderOutput PacketRenderer::Render(const RayBatch& rays) {
   const auto near = static_cast<float>(march_.near_distance);
   const auto far = static_cast<float>(march_.far_distance);
   std::atomic<std::int64_t> samples = 0;
+  std::mutex adding;
   ParallelForEach((count + kTileRays - 1) / kTileRays, [&](std::int64_t part) {
     thread_local Tile tile;
+    LapTimer timer;
     const std::int64_t first = part * kTileRays, last = std::min(count, first + kTileRays);
     Begin(rays, first, last, tile);
     while (!tile.alive.empty()) Advance(rays, first, tile);
@@ -214,6 +225,13 @@ RenderOutput PacketRenderer::Render(const RayBatch& rays) {
       out.depth[r] = met > 0 ? std::clamp(ray.weighted_t / met, near, far) : 0.0f;
     }
     samples += tile.evaluated;
+    StageSeconds seconds = tile.field.density.seconds;
+    seconds.sampling = tile.sampling_seconds;
+    double all = 0;
+    timer.Lap(all);
+    seconds.SetAll(all);
+    const std::lock_guard lock(adding);
+    out.seconds.Add(seconds, 1.0 / NumThreads());
   });
   out.samples = samples;
   return out;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "nerf/sampling/rays.h"
+#include "nerf/stage_seconds.h"
 
 namespace nerf {
 
@@ -14,6 +15,7 @@ struct RenderOutput {
   std::vector<float> depth;    // [R] expected distance of what was hit, normalized scene units,
                                // inside [near, far]; 0 where opacity is 0: there it has no meaning
   std::int64_t samples = 0;    // points at which the field was evaluated
+  StageSeconds seconds;        // nothing where the renderer does not take its stages' time
 };
 
 // Anything that turns rays into colours.

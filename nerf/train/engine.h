@@ -9,6 +9,7 @@
 #include "nerf/render/ray_renderer.h"
 #include "nerf/sampling/proposal_options.h"
 #include "nerf/sampling/ray_marcher.h"
+#include "nerf/stage_seconds.h"
 #include "nerf/train/train_options.h"
 
 namespace nerf {
@@ -23,6 +24,7 @@ struct StepResult {
   std::int64_t marched = 0;  // samples in occupied cells
   std::int64_t shaded = 0;   // samples of them that light reaches, on which gradients were taken
   std::vector<float> ray_error;  // [R] squared error of each ray, mean over channels
+  StageSeconds seconds;
 };
 
 // What an engine works on. Where there is a proposal it places the samples, else the grid does.

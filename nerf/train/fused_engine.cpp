@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "nerf/kernels/volume_rendering.h"
 #include "nerf/parallel.h"
 #include "nerf/sampling/occupancy_grid.h"
+#include "nerf/stopwatch.h"
 #include "nerf/train/non_finite_error.h"
 #include "sfm/input_error.h"
 
@@ -32,7 +34,15 @@ struct FusedEngine::Tile {
   FieldTile field;
   std::vector<float> rgb, opacity, depth;  // [R,3], [R], [R]
   std::int64_t placed = 0, shaded = 0;     // samples so far
+  double sampling_seconds = 0;             // so far
 
+  // Of a tile that has taken `all` seconds so far.
+  StageSeconds Seconds(double all) const {
+    StageSeconds seconds = field.density.seconds;
+    seconds.sampling = sampling_seconds;
+    seconds.SetAll(all);
+    return seconds;
+  }
   std::int64_t Rays() const { return static_cast<std::int64_t>(ray_begin.size()) - 1; }
   kernels::RaySegments<float> Segments(const RayBatch& rays, std::int64_t first) const {
     return {ray_begin,      field.density.sigma,
@@ -47,6 +57,7 @@ struct FusedEngine::Worker {
   FieldGradients field;
   DensityGradients proposal;
   double loss = 0, squared_error = 0;  // sums over rays and channels
+  StageSeconds seconds;                // of the thread
   std::vector<float> dL_drgb, dL_dopacity, dL_ddepth, dL_dsigma, dL_dradiance, dL_dbackground;
 };
 
@@ -121,7 +132,9 @@ void FusedEngine::KeepVisible(Tile& tile) const {
 // The way of a tile of rays from their origins to their pixels.
 std::int64_t FusedEngine::Forward(const RayBatch& rays, std::int64_t first, std::int64_t last,
                                   Tile& tile) const {
+  LapTimer timer;
   const std::int64_t end = PlaceSamples(rays, first, last, tile);
+  timer.Lap(tile.sampling_seconds);
   tile.placed += tile.samples.Size();
   field_.Density().Density(tile.samples.position, tile.field.density);
   KeepVisible(tile);
@@ -213,8 +226,10 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
       tile.Segments(batch.rays, first), {worker.dL_drgb, worker.dL_dopacity, worker.dL_ddepth},
       {worker.dL_dsigma, worker.dL_dradiance, worker.dL_dbackground}, 0, count);
   if (proposal_) {
+    LapTimer timer;
     proposal_->Backward(batch.rays.Size(), tile.ray_begin, tile.field.density.sigma,
                         tile.samples.dt, tile.proposal, worker.dL_dsigma, worker.proposal);
+    timer.Lap(tile.sampling_seconds);
   }
   if (const double full = parts_.gradient_scaling.full_distance; full > 0) {
     for (std::int64_t i = 0; i < size; ++i) {
@@ -239,10 +254,12 @@ RenderOutput FusedEngine::Render(const RayBatch& rays) {
   const auto near = static_cast<float>(parts_.march.near_distance);
   const auto far = static_cast<float>(parts_.march.far_distance);
   std::atomic<std::int64_t> samples = 0;
+  std::mutex adding;
   // Neighbouring rays share cells; chunks are small enough to keep all threads at work to the end.
   constexpr std::int64_t kChunk = 256;
   ParallelForEach((count + kChunk - 1) / kChunk, [&](std::int64_t chunk) {
     Tile tile;
+    LapTimer timer;
     const std::int64_t last = std::min(count, (chunk + 1) * kChunk);
     for (std::int64_t first = chunk * kChunk; first < last;) {
       const std::int64_t next = Forward(rays, first, last, tile);
@@ -255,6 +272,10 @@ RenderOutput FusedEngine::Render(const RayBatch& rays) {
       first = next;
     }
     samples += tile.placed;
+    double all = 0;
+    timer.Lap(all);
+    const std::lock_guard lock(adding);
+    out.seconds.Add(tile.Seconds(all), 1.0 / NumThreads());
   });
   out.samples = samples;
   return out;
@@ -274,6 +295,9 @@ StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
       Worker& worker = workers_[k];
       worker.loss = worker.squared_error = 0;
       worker.tile.placed = worker.tile.shaded = 0;
+      worker.tile.sampling_seconds = 0;
+      worker.tile.field.density.seconds = {};
+      LapTimer timer;
       field_.Clear(worker.field);
       if (proposal_) proposal_->Clear(worker.proposal);
       const std::int64_t last = count * (k + 1) / threads;
@@ -282,6 +306,9 @@ StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
         Backward(batch, first, worker, result.ray_error);
         first = next;
       }
+      double all = 0;
+      timer.Lap(all);
+      worker.seconds = worker.tile.Seconds(all);
     }
   });
 
@@ -294,9 +321,15 @@ StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
     result.squared_error += worker.squared_error;
     result.marched += worker.tile.placed;
     result.shaded += worker.tile.shaded;
+    result.seconds.Add(worker.seconds, 1.0 / static_cast<double>(threads));
   }
+  LapTimer timer;
   field_.AddToParameters(of_field);
-  if (proposal_) proposal_->AddToParameters(of_proposal);
+  timer.Lap(result.seconds.encoding);
+  if (proposal_) {
+    proposal_->AddToParameters(of_proposal);
+    timer.Lap(result.seconds.sampling);
+  }
   const double channels = 3.0 * static_cast<double>(std::max<std::int64_t>(1, count));
   result.loss /= channels;
   result.squared_error /= channels;

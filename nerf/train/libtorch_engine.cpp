@@ -128,8 +128,11 @@ RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
     const torch::Tensor flat = tensor.to(torch::kFloat).contiguous();
     return std::vector<float>(flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel());
   };
-  RenderOutput result = {to_vector(out.pixels.rgb), to_vector(out.pixels.opacity),
-                         to_vector(out.pixels.depth), out.marched + out.samples.Size()};
+  RenderOutput result = {to_vector(out.pixels.rgb),
+                         to_vector(out.pixels.opacity),
+                         to_vector(out.pixels.depth),
+                         out.marched + out.samples.Size(),
+                         {}};
   for (std::size_t r = 0; r < result.depth.size(); ++r) {
     if (result.opacity[r] > 0) {
       result.depth[r] = std::clamp(result.depth[r] / result.opacity[r],

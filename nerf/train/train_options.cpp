@@ -45,13 +45,11 @@ void ScheduleOptions::Check() const {
   }
 }
 
-double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, std::int64_t steps) {
+double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, double progress) {
   const double rise = schedule.warmup_steps > 0
                           ? std::min(1.0, static_cast<double>(step + 1) / schedule.warmup_steps)
                           : 1.0;
-  const double progress = std::clamp(
-      static_cast<double>(step) / static_cast<double>(std::max<std::int64_t>(1, steps)), 0.0, 1.0);
-  const double fall = 0.5 * (1.0 + std::cos(std::numbers::pi * progress));
+  const double fall = 0.5 * (1.0 + std::cos(std::numbers::pi * std::clamp(progress, 0.0, 1.0)));
   return rise * (schedule.final_factor + (1.0 - schedule.final_factor) * fall);
 }
 
@@ -69,6 +67,14 @@ void TrainOptions::Check() const {
         "away");
   }
   if (steps < 1) throw sfm::InputError("config: train.steps is {}; use 1 or more", steps);
+  constexpr double kMonth = 30 * 24 * 3600;
+  if (!(time_budget == 0 || (time_budget >= 1 && time_budget <= kMonth))) {
+    throw sfm::InputError("config: train.time_budget is {} seconds; use 0 (none) or 1 to {:.0f}",
+                          time_budget, kMonth);
+  }
+  if (!(target_psnr >= 0 && target_psnr <= 100)) {
+    throw sfm::InputError("config: train.target_psnr is {} dB; use 0 (none) to 100", target_psnr);
+  }
   if (samples_per_batch < 1 || samples_per_batch > (1 << 24)) {
     throw sfm::InputError("config: train.samples_per_batch is {}; use 1 to {}", samples_per_batch,
                           1 << 24);

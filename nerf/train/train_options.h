@@ -39,7 +39,8 @@ struct ScheduleOptions {
 
   void Check() const;
 };
-double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, std::int64_t steps);
+//   progress  in [0, 1], of the whole run
+double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, double progress);
 
 struct TrainOptions {
   std::string engine = "fused";  // or "libtorch", the definition that it is tested against
@@ -47,6 +48,11 @@ struct TrainOptions {
   // which takes less time on processors with AVX512-BF16 and more on others.
   std::string precision = "float";
   std::int64_t steps = 5000;
+  // Seconds for the whole command, from reading photographs to the last checkpoint; the learning
+  // rate falls by the clock, and steps do not count. 0: steps decide.
+  double time_budget = 0;
+  // Training ends early where the validation reaches so many dB. 0: it never does.
+  double target_psnr = 0;
   std::int64_t samples_per_batch = 32768;  // samples with gradients that a step aims at
   std::int64_t max_rays_per_batch = 4096;
   // Of a batch, drawn where the field is still wrong (ErrorMap); the others anywhere.

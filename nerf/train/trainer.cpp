@@ -1,10 +1,7 @@
 #include "nerf/train/trainer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "nerf/data/pixel_sampler.h"
 #include "nerf/field/proposal_field.h"
@@ -12,71 +9,40 @@
 #include "nerf/field/tensor_span.h"
 #include "nerf/parallel.h"
 #include "nerf/sampling/occupancy_grid.h"
+#include "nerf/stopwatch.h"
 #include "nerf/train/checkpoint.h"
 #include "nerf/train/engine.h"
+#include "nerf/train/metrics_file.h"
 #include "nerf/train/non_finite_error.h"
 #include "nerf/train/optimizer.h"
+#include "nerf/train/pace.h"
 #include "nerf/train/parameters.h"
 #include "nerf/train/run_folder.h"
+#include "nerf/train/tally.h"
+#include "nerf/train/training_display.h"
 #include "nerf/train/visible_cells.h"
-#include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
-#include "sfm/progress.h"
 
 namespace nerf {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 // What checkpoints call the state of the error map.
 constexpr char kErrorsName[] = "sampler.errors";
 
-double Psnr(double mean_squared_error) { return -10.0 * std::log10(mean_squared_error); }
-
-// Metrics of the steps up to and with `last_step`: what a run wrote after the checkpoint it resumes
-// from will be written again.
-std::string MetricsUntil(const std::filesystem::path& path, std::int64_t last_step) {
-  std::ifstream file(path);
-  std::string kept;
-  for (std::string line; std::getline(file, line);) {
-    const auto json = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
-    if (json.is_object() && json.value("step", last_step + 1) <= last_step) kept += line + "\n";
-  }
-  return kept;
-}
-
 }  // namespace
 
-// The running totals between two lines of metrics.
-struct Tally {
-  double loss = 0, squared_error = 0;
-  std::int64_t steps = 0, rays = 0, marched = 0, shaded = 0;
-  double seconds = 0;
-
-  void Add(const StepResult& result, std::int64_t batch_rays, double step_seconds) {
-    loss += result.loss;
-    squared_error += result.squared_error;
-    ++steps;
-    rays += batch_rays;
-    marched += result.marched;
-    shaded += result.shaded;
-    seconds += step_seconds;
-  }
-};
-
 struct Trainer::State {
-  State(Model model_in, const Dataset& data_in, std::filesystem::path run_in)
+  State(Model model_in, const Dataset& data_in, std::filesystem::path run_in, double spent)
       : model(std::move(model_in)),
         data(data_in),
         run(std::move(run_in)),
         sampler(data.train, Options().error_driven_share),
         optimizer(NamedParameters(model), model.config.optimizer),
+        pace(Options(), spent),
         rays_per_batch(std::clamp<std::int64_t>(Options().samples_per_batch / 128, 1,
                                                 Options().max_rays_per_batch)) {
+    TORCH_CHECK(Options().target_psnr == 0 || !data.validation.empty(),
+                "Trainer: a target PSNR needs validation photographs");
     if (!data.validation.empty()) {
       constexpr std::int64_t kValidationRays = 8192;
       validation = PixelSampler(data.validation).Sample(kValidationRays, Options().seed, 0);
@@ -87,9 +53,12 @@ struct Trainer::State {
   const TrainOptions& Options() const { return model.config.train; }
 
   StepResult Step();
+  StepResult Learn(StepSeconds& seconds);
   void AdaptBatch(std::int64_t shaded);
   double Validate();
-  void WriteMetrics(std::ofstream& file, const Tally& tally) const;
+  bool ReachedTarget() const;
+  bool Over() const { return ReachedTarget() || pace.Progress(step) >= 1; }
+  nlohmann::json Metrics() const;
   void Save() const;
 
   Model model;
@@ -98,6 +67,8 @@ struct Trainer::State {
   PixelSampler sampler;
   Adam optimizer;
   TargetBatch validation;
+  Pace pace;
+  Tally tally;  // since the last line of metrics
 
   // What a checkpoint keeps beside parameters and optimiser; random numbers need no more than
   // these.
@@ -107,7 +78,21 @@ struct Trainer::State {
   double validation_psnr = 0;
 };
 
+// A step with its book-keeping.
 StepResult Trainer::State::Step() {
+  StepSeconds seconds;
+  LapTimer timer;
+  const std::int64_t rays = rays_per_batch;
+  const StepResult result = Learn(seconds);
+  AdaptBatch(result.shaded);
+  ++step;
+  timer.Lap(seconds.all);
+  training_seconds += seconds.all;
+  tally.Add(result, rays, seconds);
+  return result;
+}
+
+StepResult Trainer::State::Learn(StepSeconds& seconds) {
   const TrainOptions& options = Options();
   if (model.proposal) {
     const int anneal = model.config.proposal.anneal_steps;
@@ -116,14 +101,22 @@ StepResult Trainer::State::Step() {
     model.field->SetDetail(static_cast<double>(step) / fade);
   }
   try {
+    LapTimer timer;
+    double of_engine = 0;
     if (step % model.config.occupancy.update_every == 0) {
       model.engine->UpdateOccupancy(step, options.seed);
     }
+    timer.Lap(seconds.occupancy);
     const TargetBatch batch = sampler.Sample(rays_per_batch, options.seed, step);
+    timer.Lap(seconds.pixels);
     const StepResult result = model.engine->AccumulateGradients(batch);
+    timer.Lap(of_engine);
     if (ErrorMap* errors = sampler.Errors()) errors->Learn(batch.cell, result.ray_error);
-    optimizer.SetLearningRateFactor(LearningRateFactor(model.config.schedule, step, options.steps));
+    timer.Lap(seconds.pixels);
+    optimizer.SetLearningRateFactor(
+        LearningRateFactor(model.config.schedule, step, pace.Progress(step)));
     optimizer.step();
+    timer.Lap(seconds.optimizer);
     return result;
   } catch (const NonFiniteError& error) {
     throw NonFiniteError(fmt::format("step {}: {}; the last good checkpoint stays in {}", step,
@@ -147,26 +140,23 @@ double Trainer::State::Validate() {
         std::clamp(out.rgb[i], 0.0f, 1.0f) - std::clamp(validation.rgb[i], 0.0f, 1.0f);
     sum += error * error;
   }
-  return Psnr(sum / static_cast<double>(out.rgb.size()));
+  return PsnrOf(sum / static_cast<double>(out.rgb.size()));
 }
 
-void Trainer::State::WriteMetrics(std::ofstream& file, const Tally& tally) const {
-  const auto steps = static_cast<double>(tally.steps);
-  const auto rays = static_cast<double>(tally.rays);
-  nlohmann::json line = {
-      {"step", step},
-      {"seconds", training_seconds},
-      {"loss", tally.loss / steps},
-      {"train_psnr", Psnr(tally.squared_error / steps)},
-      {"rays_per_second", rays / tally.seconds},
-      {"samples_per_second", static_cast<double>(tally.shaded) / tally.seconds},
-      {"marched_per_ray", static_cast<double>(tally.marched) / rays},
-      {"samples_per_ray", static_cast<double>(tally.shaded) / rays},
-      {"occupied", model.grid->OccupiedFraction()},
-      {"learning_rate", model.config.optimizer.learning_rate *
-                            LearningRateFactor(model.config.schedule, step, Options().steps)}};
+bool Trainer::State::ReachedTarget() const {
+  return Options().target_psnr > 0 && validation_psnr >= Options().target_psnr;
+}
+
+nlohmann::json Trainer::State::Metrics() const {
+  nlohmann::json line = tally.Metrics();
+  line["step"] = step;
+  line["seconds"] = training_seconds;
+  line["spent_seconds"] = pace.Spent();
+  line["occupied"] = model.grid->OccupiedFraction();
+  line["learning_rate"] = model.config.optimizer.learning_rate *
+                          LearningRateFactor(model.config.schedule, step, pace.Progress(step));
   if (!data.validation.empty()) line["validation_psnr"] = validation_psnr;
-  file << line.dump() << "\n" << std::flush;
+  return line;
 }
 
 void Trainer::State::Save() const {
@@ -181,20 +171,22 @@ void Trainer::State::Save() const {
   checkpoint.meta["step"] = step;
   checkpoint.meta["rays_per_batch"] = rays_per_batch;
   checkpoint.meta["training_seconds"] = training_seconds;
+  checkpoint.meta["spent_seconds"] = pace.Spent();
   checkpoint.meta["threads"] = NumThreads();
   checkpoint.meta["validation_psnr"] = validation_psnr;
   WriteCheckpoint(CheckpointPath(run), checkpoint);
 }
 
 Trainer::Trainer(const Config& config, const SceneFacts& scene, const Dataset& data,
-                 const std::filesystem::path& run)
-    : state_(std::make_unique<State>(MakeModel(config, scene), data, run)) {
+                 const std::filesystem::path& run, double spent)
+    : state_(std::make_unique<State>(MakeModel(config, scene), data, run, spent)) {
   KeepVisibleCells(*state_->model.grid, data.train);
 }
 
 Trainer::Trainer(const Checkpoint& checkpoint, const Dataset& data,
-                 const std::filesystem::path& run)
-    : state_(std::make_unique<State>(ModelFromCheckpoint(checkpoint), data, run)) {
+                 const std::filesystem::path& run, double spent)
+    : state_(std::make_unique<State>(ModelFromCheckpoint(checkpoint), data, run,
+                                     spent + checkpoint.meta.value("spent_seconds", 0.0))) {
   try {
     state_->optimizer.LoadFrom(checkpoint.tensors);
     if (ErrorMap* errors = state_->sampler.Errors()) {
@@ -222,46 +214,47 @@ Trainer::~Trainer() = default;
 
 const Model& Trainer::GetModel() const { return state_->model; }
 
+double Trainer::TrySteps(int steps) {
+  State& s = *state_;
+  const Stopwatch watch;
+  for (int i = 0; i < steps && !s.Over(); ++i) s.Step();
+  return watch.Seconds() / steps;
+}
+
 TrainSummary Trainer::Run(const std::atomic<bool>& stop) {
   State& s = *state_;
   const TrainOptions& options = s.Options();
-  sfm::WriteFileAtomically(MetricsPath(s.run), MetricsUntil(MetricsPath(s.run), s.step));
-  std::ofstream metrics(MetricsPath(s.run), std::ios::app);
-  sfm::ProgressLine progress("training", options.steps, s.step);
+  MetricsFile metrics(MetricsPath(s.run), s.step);
+  const bool timed = options.time_budget > 0;
+  const auto done = [&] { return timed ? std::llround(s.pace.Spent()) : s.step; };
+  TrainingDisplay display(timed ? std::llround(options.time_budget) : options.steps, done());
 
-  Tally tally;
-  double shown_loss = 0, shown_rate = 0;
-  while (s.step < options.steps && !stop) {
-    const auto begin = Clock::now();
-    const std::int64_t rays = s.rays_per_batch;
+  // Asked for once a step, for the clock goes on.
+  bool over = s.Over();
+  while (!over && !stop) {
+    const double before = s.training_seconds;
+    const auto rays = static_cast<double>(s.rays_per_batch);
     const StepResult result = s.Step();
-    s.AdaptBatch(result.shaded);
-    ++s.step;
-    const double seconds = SecondsSince(begin);
-    s.training_seconds += seconds;
-    tally.Add(result, rays, seconds);
+    over = s.Over();
 
-    constexpr double kSmoothing = 0.95;
-    const double keep = tally.steps == 1 && shown_rate == 0 ? 0.0 : kSmoothing;
-    shown_loss = keep * shown_loss + (1 - keep) * result.loss;
-    shown_rate = keep * shown_rate + (1 - keep) * static_cast<double>(rays) / seconds;
-
-    const bool last = s.step == options.steps;
-    if (last || s.step % options.validate_every == 0) {
+    LapTimer timer;
+    const bool validates = over || s.step % options.validate_every == 0;
+    if (validates) {
       if (!s.data.validation.empty()) s.validation_psnr = s.Validate();
-      s.WriteMetrics(metrics, tally);
-      tally = {};
+      metrics.Append(s.Metrics());
+      s.tally = {};
+      over = over || s.ReachedTarget();
     }
-    if (last || s.step % options.checkpoint_every == 0) s.Save();
-    const std::string psnr =
-        s.validation_psnr > 0 ? fmt::format("  val {:.2f} dB", s.validation_psnr) : "";
-    progress.Update(
-        s.step, fmt::format("loss {:.5f}  {:.1f}k rays/s{}", shown_loss, shown_rate / 1e3, psnr));
+    if (over || s.step % options.checkpoint_every == 0) {
+      s.Save();
+      double seconds = 0;
+      timer.Lap(seconds);
+      if (validates) s.pace.SetSecondsOfTheEnd(seconds);
+    }
+    display.Update(done(), result.loss, rays / (s.training_seconds - before), metrics.Curve());
   }
-  progress.Finish();
-  const bool finished = s.step >= options.steps;
-  if (!finished) s.Save();
-  return {finished, s.step, s.training_seconds, s.validation_psnr};
+  if (!over) s.Save();
+  return {over, s.step, s.training_seconds, s.validation_psnr, s.ReachedTarget(), metrics.Curve()};
 }
 
 }  // namespace nerf

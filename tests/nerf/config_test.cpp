@@ -65,6 +65,11 @@ TEST(Config, AValueOutOfRangeIsNamed) {
   EXPECT_THAT(ErrorOf("base", {"march.far_distance=2e8"}), HasSubstr("march.far_distance"));
   EXPECT_THAT(ErrorOf("base", {"train.error_driven_share=1.5"}),
               HasSubstr("train.error_driven_share"));
+  for (const char* budget : {"0.5", "-1", "1e9"}) {
+    EXPECT_THAT(ErrorOf("base", {std::string("train.time_budget=") + budget}),
+                HasSubstr("train.time_budget"));
+  }
+  EXPECT_THAT(ErrorOf("base", {"train.target_psnr=-1"}), HasSubstr("train.target_psnr"));
 }
 
 TEST(Config, AnAssignmentWithoutAValueIsExplained) {

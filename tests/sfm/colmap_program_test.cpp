@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <csignal>
 #include <stdexcept>
 
 #include "tests/support/fake_colmap.h"
@@ -74,6 +75,8 @@ TEST_F(ColmapProgramTest, FailureIsExplainedByTheErrorNotByWhatFollowsIt) {
 }
 
 TEST_F(ColmapProgramTest, EndBySignalIsToldApart) {
+  // What a shell starts in the background ignores Ctrl-C, and so do its children.
+  std::signal(SIGINT, SIG_DFL);
   EXPECT_THAT(InputErrorOf([&] { RunMapper("kill -INT $$"); }), HasSubstr("was interrupted"));
   EXPECT_THAT(InputErrorOf([&] { RunMapper("echo busy; kill -KILL $$"); }),
               AllOf(HasSubstr("out of memory?"), HasSubstr("busy")));

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "nerf/kernels/simd_level.h"
 #include "tests/nerf/commands/run_program.h"
 
 namespace nerf {
@@ -17,6 +18,8 @@ TEST(SelfcheckCommand, PrintsALineACaseAndPassesHere) {
   EXPECT_THAT(result.output, HasSubstr("ThinFogKeepsItsOpacity"));
   EXPECT_THAT(result.output, HasSubstr("BothEnginesMeanTheSame"));
   EXPECT_THAT(result.output, Not(HasSubstr("FAIL")));
+  // The level that the program takes by itself has a column.
+  EXPECT_THAT(result.output, HasSubstr(kernels::SimdLevels().front().name));
 }
 
 TEST(SelfcheckCommand, JsonHasARowForEachLevel) {

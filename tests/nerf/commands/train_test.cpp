@@ -207,7 +207,69 @@ TEST_F(TrainCommand, BadInputGetsOneClearLine) {
   ExpectRefused("train " + Poses() + " --no-such-flag", HasSubstr("no-such-flag"));
   ExpectRefused("train --resume -o " + Path("x"), HasSubstr("checkpoint"));
   ExpectRefused("train " + Poses() + " --threads -1 -o " + Path("x"), HasSubstr("--threads"));
+  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --time-budget soon",
+                HasSubstr("--time-budget"));
+  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --time-budget -5s",
+                HasSubstr("time_budget"));
+  ExpectRefused(
+      "train " + Poses() + " -o " + Path("x") + " --target-psnr 30 --set data.validation_images=0",
+      HasSubstr("data.validation_images"));
+  ExpectRefused("train --resume --time-budget 5s -o " + Path("x"), HasSubstr("--time-budget"));
   EXPECT_FALSE(fs::exists(Path("x")));
+}
+
+TEST_F(TrainCommand, ATimeBudgetIsKeptWhateverTheSteps) {
+  const auto result =
+      RunNerf(Arguments("budget") + " --time-budget 0.1m --set train.steps=100000000");
+  ASSERT_EQ(result.exit_status, 0) << result.output;
+  EXPECT_THAT(result.output,
+              AllOf(HasSubstr("time budget 0:06: preset"), HasSubstr("next: nerf eval")));
+  const auto config = nlohmann::json::parse(sfm::ReadWholeFile(Path("budget/config.json")));
+  EXPECT_EQ(config["train"]["time_budget"], 6);
+}
+
+TEST_F(TrainCommand, ATargetEndsTheRunAndSaysWhetherItWasReached) {
+  const auto made =
+      RunNerf("sample " + Path("more") + " --views 20 --width 32 --height 24 --samples 1");
+  ASSERT_EQ(made.exit_status, 0) << made.output;
+  const auto train = [](const std::string& run, const std::string& target) {
+    return RunNerf("train " + Path("more/truth/transforms.json") + " -o " + Path(run) +
+                   " --config quickstart --set train.steps=60 --set train.validate_every=20"
+                   " --set data.downscale=1 --set train.samples_per_batch=1024 --target-psnr " +
+                   target);
+  };
+  const auto reached = train("target", "1");
+  ASSERT_EQ(reached.exit_status, 0) << reached.output;
+  EXPECT_THAT(reached.output, AllOf(HasSubstr("trained 20 steps"), HasSubstr("1 dB are reached")));
+  const auto missed = train("missed", "99");
+  ASSERT_EQ(missed.exit_status, 0) << missed.output;
+  EXPECT_THAT(missed.output,
+              AllOf(HasSubstr("trained 60 steps"), HasSubstr("99 dB were not reached")));
+  const auto blind = RunNerf(Arguments("blind") + " --target-psnr 30");  // ten photographs
+  EXPECT_EQ(blind.exit_status, 2);
+  EXPECT_THAT(blind.output, HasSubstr("data.validation_images"));
+}
+
+TEST_F(TrainCommand, TheDialSaysWhatItCostsAndLoses) {
+  ASSERT_EQ(RunNerf(Arguments("dial")).exit_status, 0);
+  const auto fast = RunNerf("render " + Path("dial") + " --quality 0.25");
+  EXPECT_EQ(fast.exit_status, 0) << fast.output;
+  EXPECT_THAT(fast.output, AllOf(HasSubstr("quality 0.25: about"), HasSubstr("dB from the exact")));
+  const auto exact = RunNerf("render " + Path("dial") + " --seconds-per-frame 1000");
+  EXPECT_THAT(exact.output, AllOf(HasSubstr("quality 1.00"), HasSubstr("the exact picture")));
+  const auto hasty = RunNerf("render " + Path("dial") + " --seconds-per-frame 1e-9");
+  EXPECT_EQ(hasty.exit_status, 0) << hasty.output;
+  EXPECT_THAT(hasty.output, AllOf(HasSubstr("quality 0.00"), HasSubstr("--downscale")));
+  ExpectRefused("render " + Path("dial") + " --seconds-per-frame 0",
+                HasSubstr("--seconds-per-frame"));
+  ExpectRefused("render " + Path("dial") + " --seconds-per-frame 1 --quality 1",
+                HasSubstr("--quality"));
+  const auto eval = RunNerf("eval --json " + Path("dial"));
+  const auto json = nlohmann::json::parse(eval.output);
+  for (const char* stage : {"sampling", "encoding", "networks", "compositing"}) {
+    EXPECT_GT(json["stage_seconds_per_frame"][stage].get<double>(), 0) << stage;
+  }
+  EXPECT_GT(json["samples_per_ray"].get<double>(), 0);
 }
 
 TEST_F(TrainCommand, ABrokenCheckpointIsNamed) {

@@ -142,6 +142,18 @@ void ExpectPixel(const Camera& camera, double x, double y) {
   EXPECT_NEAR(pixel->y(), y, 1e-9);
 }
 
+TEST(RowsOf, SeeWhatTheseRowsOfTheImageSee) {
+  for (const Lens& lens : LensesThatFillTheirImage()) {
+    const Camera rows = RowsOf(lens.camera, 40, 20);
+    EXPECT_EQ(rows.width, lens.camera.width);
+    EXPECT_EQ(rows.height, 20);
+    const auto whole = DirectionFromPixel(lens.camera, {30.5, 47.5});
+    const auto part = DirectionFromPixel(rows, {30.5, 7.5});
+    ASSERT_TRUE(whole && part) << lens.name;
+    EXPECT_LT((*whole - *part).norm(), 1e-12) << lens.name;
+  }
+}
+
 TEST(CameraByHand, Pinholes) {
   ExpectPixel(Make(CameraModel::kSimplePinhole, {100, 50, 40}), 100, 65);
   ExpectPixel(Make(CameraModel::kPinhole, {100, 200, 50, 40}), 100, 90);

@@ -122,12 +122,12 @@ TEST(LearningRate, RisesThenFallsToItsFinalValue) {
   ScheduleOptions schedule;
   schedule.warmup_steps = 10;
   schedule.final_factor = 0.1;
-  EXPECT_NEAR(LearningRateFactor(schedule, 0, 1000), 0.1, 1e-3);
-  EXPECT_NEAR(LearningRateFactor(schedule, 10, 1000), 1.0, 1e-3);
-  EXPECT_NEAR(LearningRateFactor(schedule, 1000, 1000), 0.1, 1e-9);
+  EXPECT_NEAR(LearningRateFactor(schedule, 0, 0), 0.1, 1e-3);
+  EXPECT_NEAR(LearningRateFactor(schedule, 10, 0.01), 1.0, 1e-3);
+  EXPECT_NEAR(LearningRateFactor(schedule, 1000, 1), 0.1, 1e-9);
   for (int step = 10; step < 1000; ++step) {
-    EXPECT_GT(LearningRateFactor(schedule, step, 1000),
-              LearningRateFactor(schedule, step + 1, 1000));
+    EXPECT_GT(LearningRateFactor(schedule, step, step / 1000.0),
+              LearningRateFactor(schedule, step + 1, (step + 1) / 1000.0));
   }
 }
 

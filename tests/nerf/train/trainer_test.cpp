@@ -64,6 +64,82 @@ TEST(Trainer, AResumedRunEqualsAnUnbrokenOneBitForBit) {
   ExpectSameTensors(ReadRunCheckpoint(straight.path()), ReadRunCheckpoint(broken.path()));
 }
 
+TEST(Trainer, ATimeBudgetEndsTheRunWithTheLearningRateAtItsLast) {
+  const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
+  test::ScratchFolder run;
+  Config config = FewSteps(1);  // steps do not count
+  config.train.time_budget = 5;
+  config.train.validate_every = 10;
+  Trainer trainer(config, small.scene, small.data, run.path(), 3.0);
+  const TrainSummary summary = trainer.Run(never_stop);
+  EXPECT_TRUE(summary.finished);
+  EXPECT_GT(summary.step, 1);
+  // 3 of the 5 seconds were gone: no more than 2 are left. How many less, a busy machine decides.
+  EXPECT_LE(summary.training_seconds, 2.0);
+  std::ifstream metrics(MetricsPath(run.path()));
+  nlohmann::json last;
+  for (std::string line; std::getline(metrics, line);) last = nlohmann::json::parse(line);
+  EXPECT_NEAR(last["learning_rate"].get<double>(),
+              config.optimizer.learning_rate * config.schedule.final_factor,
+              0.02 * config.optimizer.learning_rate);
+  EXPECT_EQ(last["step"], summary.step);
+  EXPECT_EQ(ReadRunCheckpoint(run.path()).meta["step"], summary.step);
+}
+
+TEST(Trainer, ABudgetThatIsUsedUpIsNotTrainedAgainOnResume) {
+  const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
+  test::ScratchFolder run;
+  Config config = FewSteps(1);
+  config.train.time_budget = 2;
+  Trainer(config, small.scene, small.data, run.path()).Run(never_stop);
+  const Checkpoint checkpoint = ReadRunCheckpoint(run.path());
+  Trainer again(checkpoint, small.data, run.path(), 1.0);
+  const TrainSummary summary = again.Run(never_stop);
+  EXPECT_TRUE(summary.finished);
+  EXPECT_EQ(summary.step, checkpoint.meta["step"]);
+}
+
+TEST(Trainer, EndsWhereTheValidationReachesItsTarget) {
+  test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
+  small.data.validation.push_back(small.data.train.back());
+  small.data.train.pop_back();
+  test::ScratchFolder run;
+  Config config = FewSteps(100000);
+  config.train.validate_every = 10;
+  config.train.target_psnr = 11;
+  const TrainSummary summary = Trainer(config, small.scene, small.data, run.path()).Run(never_stop);
+  EXPECT_TRUE(summary.finished);
+  EXPECT_TRUE(summary.reached_target);
+  EXPECT_GE(summary.validation_psnr, 11);
+  EXPECT_LT(summary.step, 100000);
+  EXPECT_EQ(summary.step % 10, 0);
+  EXPECT_EQ(ReadRunCheckpoint(run.path()).meta["step"], summary.step);
+}
+
+TEST(Trainer, StagesOfAStepSumToItsTime) {
+  const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
+  test::ScratchFolder run;
+  Config config = FewSteps(20);
+  config.march.sampler = "proposal";
+  Trainer(config, small.scene, small.data, run.path()).Run(never_stop);
+  std::ifstream metrics(MetricsPath(run.path()));
+  std::string line;
+  ASSERT_TRUE(std::getline(metrics, line));
+  const auto json = nlohmann::json::parse(line);
+  double sum = 0;
+  for (const auto& [stage, seconds] : json["stage_seconds"].items()) {
+    EXPECT_GE(seconds.get<double>(), 0) << stage;
+    sum += seconds.get<double>();
+  }
+  EXPECT_NEAR(sum, json["seconds"].get<double>(), 1e-3 * sum);
+  for (const char* stage : {"pixels", "sampling", "encoding", "networks", "compositing"}) {
+    EXPECT_GT(json["stage_seconds"][stage].get<double>(), 0) << stage;
+  }
+  EXPECT_GE(json["samples_skipped"].get<double>(), 0);
+  EXPECT_LT(json["samples_skipped"].get<double>(), 1);
+  EXPECT_GT(json["peak_megabytes"].get<double>(), 10);
+}
+
 TEST(Trainer, LearnsAViewThatItNeverSaw) {
   const test::SmallCapture small = test::MakeSmallCapture(72, 64, 48);
   test::ScratchFolder run;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nerf/train/run_folder.h"
+#include "sfm/posed_images.h"
+
+namespace nerf {
+
+// Which views to render; none of image, pose and path: those of the held-out photographs.
+struct ShotOptions {
+  std::string image;  // name of a photograph
+  std::string pose;   // JSON file
+  std::string path;   // orbit, spiral, training, or JSON file
+  int frames = 120;
+  std::optional<int> downscale;
+};
+
+// One picture to make, in the frame and units of the input.
+struct Shot {
+  std::string name;
+  Eigen::Isometry3d world_from_camera;
+  sfm::Camera camera;
+};
+
+struct ShotList {
+  std::vector<Shot> shots;
+  std::string folder;                       // below RUN/renders
+  std::optional<double> frames_per_second;  // of a film
+};
+
+//   folder  of the run, for errors
+// Throws sfm::InputError where there is no such view.
+ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options,
+                     const std::filesystem::path& folder);
+
+}  // namespace nerf

@@ -1,0 +1,93 @@
+#include "nerf/commands/training_input.h"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "nerf/data/camera.h"
+#include "nerf/train/run_folder.h"
+#include "sfm/colmap_runner.h"
+#include "sfm/pose_input.h"
+#include "sfm/progress.h"
+
+namespace nerf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// "a, b, c and 14 more"
+std::string SomeOf(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
+  return text;
+}
+
+}  // namespace
+
+sfm::PosedImages FindPoses(const fs::path& input, const fs::path& run, int threads) {
+  const sfm::InputLocation location = sfm::FindInput(input);
+  if (location.kind != sfm::InputKind::kPhotos) return sfm::ReadPosedInput(location);
+  sfm::ColmapOptions colmap;
+  colmap.threads = threads;
+  sfm::ColmapReport report;
+  sfm::PosedImages posed = sfm::PosesFromPhotos(location.images, ColmapPath(run), colmap, &report);
+  if (!report.skipped.empty()) {
+    spdlog::warn("{} of {} photographs cannot be read and are left out", report.skipped.size(),
+                 report.skipped.size() + report.photos);
+  }
+  double seconds = 0;
+  for (const auto& [step, step_seconds] : report.seconds) seconds += step_seconds;
+  fmt::print(
+      "poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
+      report.registered, report.photos, report.points, report.mean_reprojection_error,
+      sfm::FormatDuration(seconds));
+  return posed;
+}
+
+void PrintDataPlan(const sfm::PosedImages& posed, const DataOptions& options, int threads) {
+  const DataPlan plan = PlanData(posed, options);
+  int width = 0, height = 0;
+  for (const auto& image : posed.images) {
+    const sfm::Camera camera = Downscaled(posed.cameras[image.camera], options.downscale);
+    width = std::max(width, camera.width);
+    height = std::max(height, camera.height);
+  }
+  const std::string share =
+      plan.held == plan.pixels
+          ? ""
+          : fmt::format(", of every {:.3g} pixels one at random (data.memory_mb allows no more)",
+                        static_cast<double>(plan.pixels) / static_cast<double>(plan.held));
+  fmt::print(
+      "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels; {} MB of "
+      "pixels held{}\n",
+      threads, plan.train, plan.validation, plan.held_out, width, height, plan.Bytes() >> 20,
+      share);
+  std::fflush(stdout);
+}
+
+void WarnOfMissing(const sfm::PosedImages& posed) {
+  if (posed.missing.empty()) return;
+  spdlog::warn("{}: {} of {} images are missing and left out: {}", posed.source.string(),
+               posed.missing.size(), posed.missing.size() + posed.images.size(),
+               SomeOf(posed.missing));
+}
+
+Dataset LoadOrWarn(const sfm::PosedImages& posed, const DataOptions& options,
+                   const sfm::SceneNormalization& normalized_from_world) {
+  Dataset data = LoadDataset(posed, options, normalized_from_world);
+  if (!data.skipped.empty()) {
+    for (const std::string& reason : data.skipped) spdlog::warn("{}", reason);
+    spdlog::warn("{} images could not be read and are left out", data.skipped.size());
+  }
+  return data;
+}
+
+}  // namespace nerf

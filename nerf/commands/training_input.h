@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+
+#include "nerf/data/dataset.h"
+#include "sfm/posed_images.h"
+#include "sfm/scene_normalization.h"
+
+namespace nerf {
+
+// What training reads, with what a person is told about it on the way.
+
+// Poses of the input: read where it brings them, found by COLMAP in the run's folder where it is a
+// folder of photographs.
+sfm::PosedImages FindPoses(const std::filesystem::path& input, const std::filesystem::path& run,
+                           int threads);
+
+// Names photographs that the poses tell of and that are not there.
+void WarnOfMissing(const sfm::PosedImages& posed);
+
+// A line on what will be read and held, before it is.
+void PrintDataPlan(const sfm::PosedImages& posed, const DataOptions& options, int threads);
+
+// The photographs; those that cannot be read are named and left out.
+Dataset LoadOrWarn(const sfm::PosedImages& posed, const DataOptions& options,
+                   const sfm::SceneNormalization& normalized_from_world);
+
+}  // namespace nerf
