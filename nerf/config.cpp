@@ -75,7 +75,8 @@ void Overlay(json& base, const json& change, const std::string& where, const std
     if (old.is_object()) {
       Overlay(old, value, where, full);
     } else if (!SameKind(old, value)) {
-      throw sfm::InputError("{}: {} must be {}, not {}", where, full, KindName(old), value.dump());
+      throw sfm::InputError("{}: {} must be {}, not {}", where, full, KindName(old),
+                            value.dump(-1, ' ', false, json::error_handler_t::replace));
     } else {
       old = value;
     }

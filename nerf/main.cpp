@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
     nerf::AddPosesCommand(app);
     nerf::AddSampleCommand(app);
     nerf::AddSelfcheckCommand(app);
+    nerf::AddStudyCommand(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::RuntimeError& e) {

@@ -14,5 +14,6 @@ void AddTrainCommand(CLI::App& app);
 void AddRenderCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);
 void AddSelfcheckCommand(CLI::App& app);
+void AddStudyCommand(CLI::App& app);
 
 }  // namespace nerf

@@ -192,10 +192,12 @@ void RunEval(const EvalArguments& arguments) {
 
   const nlohmann::json result =
       JsonFromScores(run, arguments, scores, cost, images.size() - scores.size());
-  sfm::WriteFileAtomically(output / "eval.json", result.dump(2) + "\n");
+  // Names of files need not be UTF-8.
+  const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  sfm::WriteFileAtomically(output / "eval.json", text + "\n");
   WriteImage(output / "contact_sheet.png", ContactSheet(rows));
   if (arguments.json) {
-    fmt::print("{}\n", result.dump(2));
+    fmt::print("{}\n", text);
   } else {
     PrintTable(scores, cost);
     fmt::print("{}\n", (output / "contact_sheet.png").string());

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "nerf/train/checkpoint_file.h"
+
 namespace nerf {
 
 // Everything a run needs to go on, or to render: numbers and texts in `meta`, tensors by name.
@@ -14,13 +16,6 @@ struct Checkpoint {
   nlohmann::json meta;
   std::map<std::string, torch::Tensor> tensors;  // float, double, int32, int64 or uint8
 };
-
-// The file is of the safetensors format, which Python's safetensors reads too: uint64 size of the
-// header, the header as JSON, then the tensors, little endian. Its metadata hold the format's
-// version and `meta`; the last tensor, "crc32", is the CRC-32 of all bytes before it. A LibTorch
-// archive would do as well, but its pickles may hold programs: a run from a stranger is only data.
-// Source: huggingface/safetensors, README "Format".
-inline constexpr int kCheckpointVersion = 3;
 
 // Written atomically: after a kill or on a full disk the file that stood there before still stands.
 // Throws sfm::InputError naming the file and the reason.

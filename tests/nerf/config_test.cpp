@@ -72,6 +72,10 @@ TEST(Config, AValueOutOfRangeIsNamed) {
   EXPECT_THAT(ErrorOf("base", {"train.target_psnr=-1"}), HasSubstr("train.target_psnr"));
 }
 
+TEST(Config, AValueThatIsNoTextIsRefusedAsAnyOther) {
+  EXPECT_THAT(ErrorOf("base", {"train.steps=\xe9\x01"}), HasSubstr("train.steps"));
+}
+
 TEST(Config, AnAssignmentWithoutAValueIsExplained) {
   EXPECT_THAT(ErrorOf("base", {"train.steps"}), HasSubstr("block.key=value"));
 }

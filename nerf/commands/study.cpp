@@ -1,0 +1,112 @@
+#include "nerf/study/study.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "nerf/commands/commands.h"
+#include "nerf/commands/interrupt.h"
+#include "nerf/commands/threads.h"
+#include "nerf/commands/training_input.h"
+#include "nerf/study/report.h"
+#include "sfm/atomic_file.h"
+#include "sfm/input_error.h"
+#include "sfm/pose_input.h"
+#include "sfm/progress.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StudyArguments {
+  std::string input;
+  std::string output;
+  StudyOptions options;
+  int threads = 0;
+};
+
+constexpr double kShortestStudy = 600, kLongestStudy = 30 * 24 * 3600;  // seconds
+
+void PrintFront(const nlohmann::json& results) {
+  fmt::print("{:<18} {:>8} {:>9} {:>8} {:>11}\n", "on the front", "seconds", "PSNR dB", "SSIM",
+             "s a frame");
+  std::map<double, const nlohmann::json*> by_seconds;
+  for (const auto& setting : results.at("settings")) {
+    if (setting.at("on_training_front")) by_seconds[setting.at("seconds")] = &setting;
+  }
+  for (const auto& [seconds, setting] : by_seconds) {
+    const auto& exact = setting->at("dial").at(0);
+    fmt::print("{:<18} {:>8.1f} {:>9.2f} {:>8.4f} {:>11.2f}\n",
+               setting->at("name").get<std::string>(), seconds, exact.at("psnr").get<double>(),
+               exact.at("ssim").get<double>(), exact.at("seconds_per_frame").get<double>());
+  }
+}
+
+void RunStudy(const StudyArguments& arguments) {
+  const int threads = UseThreads(arguments.threads);
+  const StudyOptions& options = arguments.options;
+  if (!(options.budget >= kShortestStudy && options.budget <= kLongestStudy)) {
+    throw sfm::InputError("--budget: {} s; use 10m to 720h", options.budget);
+  }
+  if (options.downscale < 1) {
+    throw sfm::InputError("--downscale {}: use 1 or more", options.downscale);
+  }
+  sfm::FindInput(arguments.input);  // a wrong input must not leave an empty folder behind
+  const fs::path folder = arguments.output;
+  sfm::MakeOutputFolder(folder);
+  const sfm::PosedImages posed = FindPoses(arguments.input, folder, threads);
+  WarnOfMissing(posed);
+  Study study(posed, options, folder);
+  fmt::print("{} settings in {} (poses not counted); Ctrl-C stops, the same command goes on\n",
+             study.Settings(), sfm::FormatDuration(options.budget));
+  const bool done = study.Run(
+      StopOnInterrupt(), [&](std::size_t number, const StudySetting& setting, double seconds) {
+        fmt::print("{:>2} of {}: {}, {} of training\n", number + 1, study.Settings(), setting.name,
+                   sfm::FormatSeconds(seconds));
+        std::fflush(stdout);
+      });
+  if (!done) {
+    fmt::print("stopped; the settings that are done stand in {}\n", folder.string());
+    return;
+  }
+  const fs::path page = folder / "study.html";
+  sfm::WriteFileAtomically(page, StudyReport(study.Results(), folder / "crops"));
+  PrintFront(study.Results());
+  fmt::print("{}\n", page.string());
+}
+
+}  // namespace
+
+void AddStudyCommand(CLI::App& app) {
+  auto* command =
+      app.add_subcommand("study", "What accuracy costs in time: trains a grid of settings");
+  const auto arguments = std::make_shared<StudyArguments>();
+  command
+      ->add_option("input", arguments->input,
+                   "folder of photos, COLMAP project, transforms.json, or LLFF folder")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "where study.json and study.html go")
+      ->required();
+  command->add_option("--budget", arguments->options.budget, "for all of it: 10m, 1h [10m]")
+      ->transform(
+          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
+  command
+      ->add_option("--downscale", arguments->options.downscale, "reduce photographs by this factor")
+      ->capture_default_str();
+  command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
+  command->footer(
+      "study.html shows PSNR on held-out photographs against seconds of training and seconds a\n"
+      "frame, and opens without a network.\n"
+      "Examples:\n"
+      "  nerf study photos/chair -o studies/chair\n"
+      "  nerf study photos/fox/transforms.json -o studies/fox --downscale 4 --budget 1h");
+  command->callback([arguments] { RunStudy(*arguments); });
+}
+
+}  // namespace nerf

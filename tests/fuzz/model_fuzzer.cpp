@@ -1,0 +1,10 @@
+#include "nerf/train/checkpoint.h"
+#include "nerf/train/model.h"
+#include "tests/fuzz/with_checksum.h"
+
+// From the file to a model.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto file = nerf::fuzz::WriteCheckpointBytes(data, size);
+  nerf::fuzz::Expect([&] { nerf::ModelFromCheckpoint(nerf::ReadCheckpoint(file)); });
+  return 0;
+}
