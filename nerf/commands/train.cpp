@@ -140,12 +140,11 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
   Config config = LoadConfig(arguments.preset, assignments);
   RequireOwnFolder(run);
   sfm::FindInput(arguments.input);  // a wrong input must not leave an empty run behind
-  sfm::MakeOutputFolder(run);
-
   sfm::PosedImages found = FindPoses(arguments.input, run, threads);
   WarnOfMissing(found);
   AssignSplits(found, config.data);
   RequireValidation(found, config);
+  sfm::MakeOutputFolder(run);
   SceneFacts scene;
   scene.normalized_from_world = sfm::NormalizeScene(found);
   // First, for it marks the folder as a run's own.

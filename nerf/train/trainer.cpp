@@ -57,7 +57,8 @@ struct Trainer::State {
   void AdaptBatch(std::int64_t shaded);
   double Validate();
   bool ReachedTarget() const;
-  bool Over() const { return ReachedTarget() || pace.Progress(step) >= 1; }
+  // Not before the first step: a run without one has nothing to show.
+  bool Over() const { return step > 0 && (ReachedTarget() || pace.Progress(step) >= 1); }
   nlohmann::json Metrics() const;
   void Save() const;
 
