@@ -1,14 +1,36 @@
 #include "nerf/config.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
 
+// What may be missing is null where it is.
+namespace nlohmann {
+template <class T>
+struct adl_serializer<std::optional<T>> {
+  static void to_json(json& j, const std::optional<T>& value) { value ? j = *value : j = nullptr; }
+  static void from_json(const json& j, std::optional<T>& value) {
+    value = j.is_null() ? std::nullopt : std::optional<T>(j.get<T>());
+  }
+};
+}  // namespace nlohmann
+
 namespace nerf {
 
 using nlohmann::json;
+
+// Effects without options.
+void to_json(json& j, const ViewOptions&) { j = json::object(); }
+void from_json(const json&, ViewOptions&) {}
+void to_json(json& j, const ExposureOptions&) { j = json::object(); }
+void from_json(const json&, ExposureOptions&) {}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BackgroundOptions, resolution)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaskOptions, meaning)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RobustOptions, scale)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EffectsOptions, view, background, exposure, masks, robust)
 
 // Each options struct's keys, once, for reading and writing.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataOptions, downscale, test_every, validation_images, memory_mb)
@@ -32,7 +54,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HashGridOptions, levels, features, log2_table
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ProposalOptions, intervals, samples, padding, anneal_steps,
                                    loss_weight, distortion, hidden_width, encoding)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Config, data, encoding, field, occupancy, march, proposal, loss,
-                                   gradient_scaling, optimizer, schedule, train)
+                                   effects, gradient_scaling, optimizer, schedule, train)
 
 namespace {
 
@@ -60,6 +82,33 @@ std::string JoinKeys(const json& object) {
   return keys;
 }
 
+// Every effect with its defaults, whether it is on or not.
+const json& EffectsWithDefaults() {
+  static const json all = [] {
+    EffectsOptions effects;
+    effects.view.emplace();
+    effects.background.emplace();
+    effects.exposure.emplace();
+    effects.masks.emplace();
+    effects.robust.emplace();
+    return json(effects);
+  }();
+  return all;
+}
+
+void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix);
+
+// An effect's block: null turns it off, an object turns it on and changes the keys that it names.
+void OverlayEffect(json& effect, const std::string& name, const json& change,
+                   const std::string& where) {
+  if (change.is_null()) {
+    effect = nullptr;
+    return;
+  }
+  if (effect.is_null()) effect = EffectsWithDefaults().at(name);
+  Overlay(effect, change, where, "effects." + name);
+}
+
 // Writes `change` over `base`; each key must stand in `base` with the same kind of value.
 void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix) {
   if (!change.is_object()) {
@@ -72,7 +121,9 @@ void Overlay(json& base, const json& change, const std::string& where, const std
       throw sfm::InputError("{}: unknown key {}; known here are {}", where, full, JoinKeys(base));
     }
     json& old = base[key];
-    if (old.is_object()) {
+    if (prefix == "effects") {
+      OverlayEffect(old, key, value, where);
+    } else if (old.is_object()) {
       Overlay(old, value, where, full);
     } else if (!SameKind(old, value)) {
       throw sfm::InputError("{}: {} must be {}, not {}", where, full, KindName(old),
@@ -172,6 +223,7 @@ Config Checked(const json& document, const std::string& where) {
   config.occupancy.Check();
   config.march.Check();
   config.loss.Check();
+  config.effects.Check();
   config.gradient_scaling.Check();
   config.optimizer.Check();
   config.schedule.Check();
@@ -182,6 +234,35 @@ Config Checked(const json& document, const std::string& where) {
 }  // namespace
 
 json JsonFromConfig(const Config& config) { return config; }
+
+std::vector<std::string> EffectNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, block] : EffectsWithDefaults().items()) names.push_back(name);
+  return names;
+}
+
+std::string EffectAssignment(const std::string& effect, const std::string& setting) {
+  return "effects." + effect + "=" + setting;
+}
+
+std::set<std::string> NamedEffects(const std::string& preset,
+                                   const std::vector<std::string>& assignments) {
+  std::set<std::string> named;
+  const auto take = [&](const json& change) {
+    const json effects = change.is_object() ? change.value("effects", json()) : json();
+    if (!effects.is_object()) return;
+    for (const auto& [name, block] : effects.items()) named.insert(name);
+  };
+  for (const std::string& assignment : assignments) take(ParseAssignment(assignment));
+  // Built-in presets leave effects to the scene.
+  for (std::string file = preset; !BuiltInPresets().contains(file);) {
+    const json change = ParseJson(sfm::ReadWholeFile(file), "config " + file);
+    take(change);
+    if (!change.contains(kParentKey)) break;
+    file = change[kParentKey];
+  }
+  return named;
+}
 
 Config ConfigFromJson(const json& document, const std::string& where) {
   json complete = Config();

@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "nerf/data/dataset.h"
+#include "nerf/effects/effects_options.h"
 #include "nerf/field/field_options.h"
 #include "nerf/kernels/hash_encoding.h"
 #include "nerf/sampling/occupancy_grid.h"
@@ -26,6 +28,7 @@ struct Config {
   MarchOptions march;
   ProposalOptions proposal;
   LossOptions loss;
+  EffectsOptions effects;
   GradientScalingOptions gradient_scaling;
   OptimizerOptions optimizer;
   ScheduleOptions schedule;
@@ -41,6 +44,18 @@ const std::map<std::string, std::string>& BuiltInPresets();
 // Throws sfm::InputError naming the file and the key for an unknown key, a wrong type, or a value
 // out of range.
 Config LoadConfig(const std::string& preset, const std::vector<std::string>& assignments);
+
+// The effects that a person's own configuration decides: those that assignments name, and those
+// that a JSON file (or its parents) names.
+std::set<std::string> NamedEffects(const std::string& preset,
+                                   const std::vector<std::string>& assignments);
+
+// Turns an effect on or off, by its key and JSON for its block ("{}", "null"), as an assignment
+// does.
+std::string EffectAssignment(const std::string& effect, const std::string& setting);
+
+// The keys of all effects.
+std::vector<std::string> EffectNames();
 
 // A configuration as JSON and back; reading is as strict as LoadConfig.
 //   where  names the file in errors

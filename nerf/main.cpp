@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     nerf::AddEvalCommand(app);
     nerf::AddPosesCommand(app);
     nerf::AddSampleCommand(app);
+    nerf::AddInspectCommand(app);
     nerf::AddSelfcheckCommand(app);
     nerf::AddStudyCommand(app);
     app.parse(argc, argv);

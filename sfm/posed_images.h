@@ -46,6 +46,7 @@ enum class Split { kUnspecified, kTrain, kValidation, kTest };
 struct PosedImage {
   std::string name;                     // as the source calls it, unique, '/' between folders
   std::filesystem::path path;           // where the pixels are
+  std::filesystem::path mask = {};      // black where they are masked out; empty: there is none
   int camera = 0;                       // index into PosedImages::cameras
   Eigen::Isometry3d world_from_camera;  // OpenCV axes: x right, y down, z forward; source's units
   bool upright_by_exif = false;  // the camera describes the pixels after turning them by EXIF

@@ -126,6 +126,7 @@ class Reader {
     image.name = name;
     image.split = split;
     image.world_from_camera = ReadPose(frame);
+    if (const auto mask = frame.String("mask_path")) image.mask = file.parent_path() / *mask;
     // In an earlier file: train comes first, and what is trained on cannot be held out.
     if (!name_of_path_.emplace(path_in_file, name).second) return;
     const auto path = FindImage(file.parent_path() / path_in_file);

@@ -13,6 +13,7 @@ namespace sfm {
 //     each image marked with its split. nerfstudio's train_filenames, val_filenames and
 //     test_filenames mark splits too. Whatever is trained on is never test or validation.
 //   - Images without a readable file go to `missing`; the others come sorted by name.
+//   - mask_path names a frame's mask, black where pixels are masked out (nerfstudio).
 //   - Pixels are taken as stored, as COLMAP and others see them, unless the size fits only after
 //     turning by EXIF, or our own key upright_by_exif says so.
 //   - Where the image is a larger or smaller copy of what w and h say, the lens is scaled to it.

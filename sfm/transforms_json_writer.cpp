@@ -56,6 +56,7 @@ void WriteTransformsJson(const PosedImages& posed, const fs::path& file) {
     nlohmann::json frame = nlohmann::json::object();
     if (!one_camera) frame = JsonFromCamera(posed.cameras[image.camera]);
     frame["file_path"] = PathFrom(folder, image.path);
+    if (!image.mask.empty()) frame["mask_path"] = PathFrom(folder, image.mask);
     frame["transform_matrix"] = JsonFromPose(image.world_from_camera);
     // Our own keys: the path changes with the folder written into, the name may not; and where
     // turning leaves the size as it is, the size cannot tell.

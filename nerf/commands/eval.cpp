@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -10,11 +11,13 @@
 #include <vector>
 
 #include "nerf/commands/commands.h"
+#include "nerf/commands/effects_worth.h"
 #include "nerf/commands/threads.h"
 #include "nerf/data/camera.h"
 #include "nerf/data/dataset.h"
 #include "nerf/data/image_io.h"
 #include "nerf/data/image_metrics.h"
+#include "nerf/effects/exposure_fit.h"
 #include "nerf/output/contact_sheet.h"
 #include "nerf/peak_memory.h"
 #include "nerf/render/image_renderer.h"
@@ -35,6 +38,8 @@ struct EvalArguments {
   std::string output;
   std::string split = "test";
   double quality = 1;
+  bool effects = false;
+  int effects_steps = 500;
   int threads = 0;
   bool json = false;
 };
@@ -88,6 +93,27 @@ Score MeanOf(const std::vector<Score>& scores) {
   return {mean.name, mean.psnr / count, mean.ssim / count, mean.seconds / count};
 }
 
+// Nobody knows the exposure of a photograph that training never saw: it is fitted, one gain a
+// channel.
+void FitExposure(const Image& truth, Image& rendered) {
+  const Image shown = rendered.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
+  ApplyGains(FitGains(rendered.pixels, shown.pixels, rendered.encoding), rendered.pixels);
+}
+
+// Where a mask says to ignore what a photograph shows, the rendering counts as right.
+//   whole    pixels that count; empty: all
+//   returns  the decibels by which the PSNR of the whole picture is better than that of those
+double Ignore(const std::vector<std::uint32_t>& whole, const Image& truth, Image& rendered) {
+  if (whole.empty()) return 0;
+  Image counted = rendered.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
+  for (const std::uint32_t pixel : whole) {
+    std::copy_n(&rendered.pixels[3 * pixel], 3, &counted.pixels[3 * pixel]);
+  }
+  rendered = std::move(counted);
+  const double all = static_cast<double>(truth.width) * truth.height;
+  return 10 * std::log10(all / static_cast<double>(whole.size()));
+}
+
 nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& arguments,
                               const std::vector<Score>& scores, const Cost& cost,
                               std::size_t left_out) {
@@ -100,6 +126,7 @@ nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& argumen
   return {{"split", arguments.split},
           {"downscale", run.model.config.data.downscale},
           {"quality", arguments.quality},
+          {"exposure_fitted", run.model.exposure != nullptr},
           {"step", run.step},
           {"training_seconds", run.training_seconds},
           {"psnr", JsonNumber(mean.psnr)},
@@ -140,6 +167,10 @@ void RunEval(const EvalArguments& arguments) {
   const fs::path output =
       arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
   sfm::MakeOutputFolder(output);
+  if (arguments.effects) {
+    MeasureEffects(run, arguments.effects_steps, arguments.json, output);
+    return;
+  }
 
   std::vector<const sfm::PosedImage*> images;
   for (const auto& image : run.posed.images) {
@@ -158,22 +189,28 @@ void RunEval(const EvalArguments& arguments) {
   Cost cost;
   for (const sfm::PosedImage* image : images) {
     Image truth;
+    std::vector<std::uint32_t> whole;
     LapTimer reading;
     try {
-      truth = OnWhite(LoadPhotograph(run.posed, *image, downscale));
+      Photograph photograph =
+          LoadPhotograph(run.posed, *image, {downscale, run.model.config.effects.masks});
+      truth = OnWhite(photograph.pixels);
+      whole = std::move(photograph.whole);
     } catch (const sfm::InputError& error) {
       spdlog::warn("{}; left out", error.what());
       continue;
     }
     reading.Lap(cost.reading);
     const Stopwatch watch;
-    const RenderedView view =
+    RenderedView view =
         RenderView(*renderer, Downscaled(run.posed.cameras[image->camera], downscale),
                    scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
                    DisplayBackground(scene.has_alpha), scene.encoding);
     const double seconds = watch.Seconds();
     cost.Add(view);
-    const double psnr = Psnr(truth, view.rgb);
+    if (run.model.exposure) FitExposure(truth, view.rgb);
+    const double of_ignored = Ignore(whole, truth, view.rgb);
+    const double psnr = Psnr(truth, view.rgb) - of_ignored;
     scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds});
     if (rows.size() < kMostRows) {
       rows.push_back({fmt::format("{}  {:.2f} dB", image->name, psnr), truth, view.rgb});
@@ -200,6 +237,7 @@ void RunEval(const EvalArguments& arguments) {
     fmt::print("{}\n", text);
   } else {
     PrintTable(scores, cost);
+    if (run.model.exposure) fmt::print("each rendering at its photograph's exposure, fitted\n");
     fmt::print("{}\n", (output / "contact_sheet.png").string());
   }
 }
@@ -219,12 +257,19 @@ void AddEvalCommand(CLI::App& app) {
       ->add_option("--quality", arguments->quality,
                    "0, fast, to 1, exact; what each costs stands in the README")
       ->capture_default_str();
+  command->add_flag("--effects", arguments->effects,
+                    "instead: what each simulated effect is worth and costs, by short trainings");
+  command
+      ->add_option("--effects-steps", arguments->effects_steps, "steps of each of those trainings")
+      ->check(CLI::Range(10, 1000000))
+      ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");
   command->footer(
       "PSNR and SSIM compare pictures as they would be saved (8-bit sRGB).\n"
       "Examples:\n"
       "  nerf eval runs/fox\n"
+      "  nerf eval runs/fox --effects\n"
       "  nerf eval runs/fox --split train --json");
   command->callback([arguments] { RunEval(*arguments); });
 }

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -41,6 +42,7 @@ struct RenderArguments {
   bool preview = false;
   double quality = 1;
   std::optional<double> seconds_per_frame;
+  std::string exposure_of;
   int threads = 0;
 };
 
@@ -59,6 +61,18 @@ void WriteShot(const RenderedView& view, const SceneFacts& scene, const RenderAr
     Image opacity = view.opacity;
     opacity.encoding = ColorEncoding::kSrgb;  // a mask: numbers go into the file as they are
     WriteImage(stem.string() + ".opacity.png", opacity);
+  }
+}
+
+// The view as a photograph of that exposure shows it; what is seen through it is not exposed.
+void Expose(const std::array<float, 3>& gains, const Eigen::Vector3f& background,
+            RenderedView& view) {
+  for (std::size_t i = 0; i < view.opacity.pixels.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const float through = (1 - view.opacity.pixels[i]) * background[c];
+      float& value = view.rgb.pixels[3 * i + c];
+      value = gains[c] * (value - through) + through;
+    }
   }
 }
 
@@ -101,6 +115,8 @@ void RunRender(const RenderArguments& arguments) {
   }
   const OpenedRun run = OpenRun(arguments.run);
   const SceneFacts& scene = run.model.scene;
+  std::optional<std::array<float, 3>> gains;
+  if (!arguments.exposure_of.empty()) gains = GainsOf(run.model, arguments.exposure_of);
   const ShotList list = ChooseShots(run, arguments.shots, arguments.run);
   const fs::path output = arguments.output.empty()
                               ? fs::path(arguments.run) / "renders" / list.folder
@@ -129,10 +145,11 @@ void RunRender(const RenderArguments& arguments) {
                  RenderPreview(*renderer, shot.camera, factor, normalized_from_camera, background,
                                scene.encoding));
     }
-    const RenderedView view =
+    RenderedView view =
         RenderView(*renderer, shot.camera, normalized_from_camera, background, scene.encoding,
                    [&](std::int64_t of_this) { progress.Update(done + of_this, shot.name); });
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
+    if (gains) Expose(*gains, background, view);
     WriteShot(view, scene, arguments, output / shot.name);
   }
   progress.Finish();
@@ -187,6 +204,8 @@ void AddRenderCommand(CLI::App& app) {
       ->add_option("--seconds-per-frame", arguments->seconds_per_frame,
                    "the best quality whose frames take no longer")
       ->excludes(quality);
+  command->add_option("--exposure-of", arguments->exposure_of,
+                      "as this photograph is exposed [the mean of those trained on]");
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "Without --image, --pose or --path: the views of the held-out photographs.\n"

@@ -13,11 +13,13 @@ namespace {
 
 struct SampleArguments {
   std::string folder;
+  std::string calls_for = "built-in";
   sample::SampleOptions options;
 };
 
-void RunSample(const SampleArguments& arguments) {
+void RunSample(SampleArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
+  arguments.options.occasion = sample::OccasionFromName(arguments.calls_for);
   sample::WriteSample(folder, arguments.options);
   fmt::print(
       "{} photographs are in {}; true poses, depth, normals and albedo, for tests only, in {}\n"
@@ -36,6 +38,10 @@ void AddSampleCommand(CLI::App& app) {
   command
       ->add_option("folder", arguments->folder, "where the photographs go: new, empty, or a sample")
       ->required();
+  command
+      ->add_option("--calls-for", arguments->calls_for,
+                   "a capture that calls for one effect: " + sample::OccasionNames())
+      ->capture_default_str();
   command->add_option("--views", options.views, "how many photographs")->capture_default_str();
   command->add_option("--width", options.width, "of a photograph, in pixels")
       ->capture_default_str();
@@ -50,6 +56,7 @@ void AddSampleCommand(CLI::App& app) {
       "Examples:\n"
       "  nerf sample demo                          36 photographs in demo/images\n"
       "  nerf sample demo --views 60 --width 800 --height 600\n"
+      "  nerf sample drift --calls-for exposure    exposure and white balance change\n"
       "  nerf train demo                           then train on them");
   command->callback([arguments] { RunSample(*arguments); });
 }

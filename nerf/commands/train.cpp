@@ -7,10 +7,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "nerf/commands/commands.h"
+#include "nerf/commands/effects_choice.h"
 #include "nerf/commands/interrupt.h"
 #include "nerf/commands/threads.h"
 #include "nerf/commands/training_input.h"
@@ -39,6 +41,7 @@ struct TrainArguments {
   std::string preset = "balanced";
   bool preset_given = false;
   std::vector<std::string> assignments;
+  std::string effects = "auto";
   std::optional<int> downscale;
   std::optional<double> time_budget;  // seconds
   std::optional<double> target_psnr;  // dB
@@ -110,6 +113,12 @@ std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
   return assignments;
 }
 
+// Another preset for the same scene.
+Config WithEffectsOf(const Config& decided, Config preset) {
+  preset.effects = decided.effects;
+  return preset;
+}
+
 void WriteConfig(const Config& config, const fs::path& run) {
   sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
 }
@@ -133,10 +142,28 @@ double SpentOf(const Config& config, const Stopwatch& watch) {
   return budget / 2;
 }
 
+// The exposures that the inspection has found, of the photographs that are trained on.
+std::vector<double> StopsOf(const sfm::PosedImages& posed, const Inspection& inspection,
+                            const Dataset& data) {
+  std::map<std::string, double> stops_of;
+  for (std::size_t i = 0; i < inspection.stops.size(); ++i) {
+    stops_of[posed.images[i].name] = inspection.stops[i];
+  }
+  std::vector<double> stops;
+  for (const View& view : data.train) {
+    if (const auto found = stops_of.find(view.name); found != stops_of.end()) {
+      stops.push_back(found->second);
+    }
+  }
+  return stops.size() == data.train.size() ? stops : std::vector<double>();
+}
+
 void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
               const Stopwatch& watch) {
   if (arguments.input.empty()) throw sfm::InputError("nerf train: name an INPUT");
-  const std::vector<std::string> assignments = AssignmentsOf(arguments);
+  std::vector<std::string> assignments = AssignmentsOf(arguments);
+  const EffectsRequest effects = ParseEffects(arguments.effects);
+  assignments.insert(assignments.end(), effects.assignments.begin(), effects.assignments.end());
   Config config = LoadConfig(arguments.preset, assignments);
   RequireOwnFolder(run);
   sfm::FindInput(arguments.input);  // a wrong input must not leave an empty run behind
@@ -144,9 +171,20 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
   WarnOfMissing(found);
   AssignSplits(found, config.data);
   RequireValidation(found, config);
+  EffectsChoice choice;
+  const std::set<std::string> named = NamedEffects(arguments.preset, assignments);
+  const auto take_over_effects = [&] {
+    std::vector<std::string> all = assignments;
+    all.insert(all.end(), choice.assignments.begin(), choice.assignments.end());
+    return LoadConfig(arguments.preset, all);
+  };
+  if (effects.inspect) {
+    choice = ChooseEffects(found, named);
+    config = take_over_effects();
+  }
   sfm::MakeOutputFolder(run);
-  SceneFacts scene;
-  scene.normalized_from_world = sfm::NormalizeScene(found);
+  if (effects.inspect) PrintEffects(choice, named);
+  const sfm::SceneNormalization normalized_from_world = sfm::NormalizeScene(found);
   // First, for it marks the folder as a run's own.
   WriteConfig(config, run);
   sfm::WriteTransformsJson(found, PosesPath(run));
@@ -154,9 +192,15 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
 
   PrintDataPlan(posed, config.data, threads);
-  const Dataset data = LoadOrWarn(posed, config.data, scene.normalized_from_world);
-  scene.encoding = data.encoding;
-  scene.has_alpha = data.has_alpha;
+  const Dataset data = LoadOrWarn(posed, config, normalized_from_world);
+  SceneFacts scene = FactsOf(data, normalized_from_world);
+  scene.exposure_stops = StopsOf(found, choice.inspection, data);
+  if (effects.inspect) {
+    TryWhatIsOpen(config, scene, data, named, choice);
+    config = take_over_effects();
+    WriteConfig(config, run);
+    WriteEffects(choice, named, run);
+  }
   const double spent = SpentOf(config, watch);
   auto trainer = std::make_unique<Trainer>(config, scene, data, run, spent);
   if (config.train.time_budget > 0 && !arguments.preset_given) {
@@ -166,7 +210,7 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
                sfm::FormatDuration(config.train.time_budget), plan.preset, plan.steps);
     std::fflush(stdout);
     if (plan.preset != arguments.preset) {
-      config = LoadConfig(plan.preset, assignments);
+      config = WithEffectsOf(config, LoadConfig(plan.preset, assignments));
       WriteConfig(config, run);
       trainer = std::make_unique<Trainer>(config, scene, data, run, SpentOf(config, watch));
     }
@@ -190,7 +234,7 @@ void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
   WarnOfMissing(posed);
   PrintDataPlan(posed, model.config.data, threads);
-  const Dataset data = LoadOrWarn(posed, model.config.data, model.scene.normalized_from_world);
+  const Dataset data = LoadOrWarn(posed, model.config, model.scene.normalized_from_world);
   Trainer trainer(checkpoint, data, run, watch.Seconds());
   Report(trainer.Run(StopOnInterrupt()), model.config.train, run);
 }
@@ -210,6 +254,12 @@ void AddTrainCommand(CLI::App& app) {
   command->add_option("--set", arguments->assignments, "change one key: block.key=value")
       ->allow_extra_args(false)
       ->take_all();
+  command
+      ->add_option(
+          "--effects", arguments->effects,
+          "auto: as the capture calls for them; config: as configured; +exposure,-view: so, "
+          "and the others auto")
+      ->capture_default_str();
   command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
   command
       ->add_option("--time-budget", arguments->time_budget,

@@ -10,6 +10,8 @@
 #include "nerf/data/camera.h"
 #include "nerf/train/run_folder.h"
 #include "sfm/colmap_runner.h"
+#include "sfm/input_error.h"
+#include "sfm/masks.h"
 #include "sfm/pose_input.h"
 #include "sfm/progress.h"
 
@@ -34,7 +36,11 @@ std::string SomeOf(const std::vector<std::string>& names) {
 
 sfm::PosedImages FindPoses(const fs::path& input, const fs::path& run, int threads) {
   const sfm::InputLocation location = sfm::FindInput(input);
-  if (location.kind != sfm::InputKind::kPhotos) return sfm::ReadPosedInput(location);
+  if (location.kind != sfm::InputKind::kPhotos) {
+    sfm::PosedImages posed = sfm::ReadPosedInput(location);
+    sfm::FindMasks(posed);
+    return posed;
+  }
   sfm::ColmapOptions colmap;
   colmap.threads = threads;
   sfm::ColmapReport report;
@@ -49,6 +55,7 @@ sfm::PosedImages FindPoses(const fs::path& input, const fs::path& run, int threa
       "poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
       report.registered, report.photos, report.points, report.mean_reprojection_error,
       sfm::FormatDuration(seconds));
+  sfm::FindMasks(posed);
   return posed;
 }
 
@@ -80,9 +87,15 @@ void WarnOfMissing(const sfm::PosedImages& posed) {
                SomeOf(posed.missing));
 }
 
-Dataset LoadOrWarn(const sfm::PosedImages& posed, const DataOptions& options,
+Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
                    const sfm::SceneNormalization& normalized_from_world) {
-  Dataset data = LoadDataset(posed, options, normalized_from_world);
+  if (config.effects.masks &&
+      std::ranges::all_of(posed.images, [](const auto& image) { return image.mask.empty(); })) {
+    throw sfm::InputError(
+        "effects.masks: no photograph has a mask; put them into a folder masks beside the "
+        "photographs, IMAGE.png each, or leave the effect away");
+  }
+  Dataset data = LoadDataset(posed, config.data, config.effects.masks, normalized_from_world);
   if (!data.skipped.empty()) {
     for (const std::string& reason : data.skipped) spdlog::warn("{}", reason);
     spdlog::warn("{} images could not be read and are left out", data.skipped.size());

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "nerf/config.h"
 #include "nerf/data/dataset.h"
 #include "sfm/posed_images.h"
 #include "sfm/scene_normalization.h"
@@ -22,7 +23,7 @@ void WarnOfMissing(const sfm::PosedImages& posed);
 void PrintDataPlan(const sfm::PosedImages& posed, const DataOptions& options, int threads);
 
 // The photographs; those that cannot be read are named and left out.
-Dataset LoadOrWarn(const sfm::PosedImages& posed, const DataOptions& options,
+Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
                    const sfm::SceneNormalization& normalized_from_world);
 
 }  // namespace nerf

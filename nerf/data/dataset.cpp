@@ -22,16 +22,20 @@ std::int64_t PixelsOf(const sfm::Camera& camera) {
   return static_cast<std::int64_t>(camera.width) * camera.height;
 }
 
-View MakeView(const sfm::PosedImages& posed, const sfm::PosedImage& image, const Image& pixels,
+View MakeView(const sfm::PosedImages& posed, const sfm::PosedImage& image, Photograph photograph,
               int downscale, const sfm::SceneNormalization& normalized_from_world,
               const DataPlan& plan) {
+  const Image& pixels = photograph.pixels;
   View view;
   view.name = image.name;
   view.camera = Downscaled(posed.cameras[image.camera], downscale);
   view.normalized_from_camera = normalized_from_world.NormalizedFromCamera(image.world_from_camera);
   CheckCameraCentre(view.normalized_from_camera.translation(), image.name);
   view.seed = static_cast<std::uint64_t>(&image - posed.images.data());
-  view.rgba.resize(4 * plan.HeldOf(PixelsOf(view.camera)));
+  view.whole = std::move(photograph.whole);
+  view.rgba.resize(4 * plan.HeldOf(view.whole.empty()
+                                       ? PixelsOf(view.camera)
+                                       : static_cast<std::int64_t>(view.whole.size())));
   for (std::int64_t k = 0; k < view.Held(); ++k) {
     const float* from = &pixels.pixels[view.PixelOf(k) * pixels.channels];
     // The sun in an HDR image is brighter than a half can say.
@@ -51,6 +55,16 @@ bool HasTransparentPixel(const Image& image) {
     if (static_cast<float>(Eigen::half(image.pixels[i])) < 1.0f) return true;
   }
   return false;
+}
+
+// Whether some photograph shows anything at all.
+bool ShowsSomething(const std::vector<View>& views) {
+  return std::ranges::any_of(views, [](const View& view) {
+    for (std::size_t i = 3; i < view.rgba.size(); i += 4) {
+      if (view.rgba[i] > Eigen::half(0)) return true;
+    }
+    return false;
+  });
 }
 
 // How many photographs may be decoded at once: each takes a float image and another while it is
@@ -103,13 +117,29 @@ DataPlan PlanData(const sfm::PosedImages& posed, const DataOptions& options) {
   return plan;
 }
 
+std::int64_t View::Choices() const {
+  return whole.empty() ? PixelsOf(camera) : static_cast<std::int64_t>(whole.size());
+}
+
 std::int64_t View::PixelOf(std::int64_t k) const {
-  const std::int64_t all = PixelsOf(camera), held = Held();
-  if (held == all) return k;
-  constexpr std::uint64_t kHeldStream = 0x68656c645f5f5f5full;
-  const std::int64_t begin = all * k / held, end = all * (k + 1) / held;
-  const std::uint64_t bits = RandomBits(seed, kHeldStream, static_cast<std::uint64_t>(k));
-  return begin + static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(end - begin));
+  const std::int64_t all = Choices(), held = Held();
+  std::int64_t choice = k;
+  if (held < all) {
+    constexpr std::uint64_t kHeldStream = 0x68656c645f5f5f5full;
+    const std::int64_t begin = all * k / held, end = all * (k + 1) / held;
+    const std::uint64_t bits = RandomBits(seed, kHeldStream, static_cast<std::uint64_t>(k));
+    choice = begin + static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(end - begin));
+  }
+  return whole.empty() ? choice : whole[choice];
+}
+
+std::int64_t View::HeldNear(std::int64_t pixel) const {
+  std::int64_t choice = pixel;
+  if (!whole.empty()) {
+    choice = std::ranges::lower_bound(whole, static_cast<std::uint32_t>(pixel)) - whole.begin();
+    choice = std::min(choice, Choices() - 1);
+  }
+  return choice * Held() / Choices();
 }
 
 void AssignSplits(sfm::PosedImages& posed, const DataOptions& options) {
@@ -140,8 +170,10 @@ void AssignSplits(sfm::PosedImages& posed, const DataOptions& options) {
   }
 }
 
-Image LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image, int downscale) {
-  Image pixels = ReadImage(image.path, image.upright_by_exif);
+Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image,
+                          const PhotographOptions& options) {
+  Photograph photograph = {ReadImage(image.path, image.upright_by_exif), {}};
+  Image& pixels = photograph.pixels;
   const sfm::Camera& camera = posed.cameras[image.camera];
   if (pixels.width != camera.width || pixels.height != camera.height) {
     throw sfm::InputError(
@@ -150,10 +182,24 @@ Image LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image
         image.path.string(), pixels.width, pixels.height, posed.source.string(), camera.width,
         camera.height);
   }
-  return downscale == 1 ? pixels : Downscale(pixels, downscale);
+  if (options.masks && !image.mask.empty()) {
+    const Image mask = ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif);
+    if (options.masks->meaning == "empty") {
+      pixels = WithMask(pixels, mask);
+    } else {
+      photograph.whole = WholePixels(mask, options.downscale);
+      if (photograph.whole.empty()) {
+        throw sfm::InputError("{}: masks out the whole photograph; black is what it masks out",
+                              image.mask.string());
+      }
+    }
+  }
+  pixels = Downscale(pixels, options.downscale);
+  return photograph;
 }
 
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
+                    const std::optional<MaskOptions>& masks,
                     const sfm::SceneNormalization& normalized_from_world) {
   Dataset data;
   const auto count = static_cast<std::int64_t>(posed.images.size());
@@ -164,6 +210,7 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
     std::string failure;
   };
   const DataPlan plan = PlanData(posed, options);
+  if (masks) CheckMasks(posed);
   std::vector<Loaded> loaded(count);
   const std::int64_t decoders = Decoders(posed, options);
   std::atomic<std::int64_t> next = 0;
@@ -172,11 +219,11 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
       const sfm::PosedImage& image = posed.images[i];
       if (image.split == sfm::Split::kTest) continue;
       try {
-        const Image pixels = LoadPhotograph(posed, image, options.downscale);
-        loaded[i].encoding = pixels.encoding;
-        loaded[i].has_alpha = HasTransparentPixel(pixels);
-        loaded[i].view =
-            MakeView(posed, image, pixels, options.downscale, normalized_from_world, plan);
+        Photograph photograph = LoadPhotograph(posed, image, {options.downscale, masks});
+        loaded[i].encoding = photograph.pixels.encoding;
+        loaded[i].has_alpha = HasTransparentPixel(photograph.pixels);
+        loaded[i].view = MakeView(posed, image, std::move(photograph), options.downscale,
+                                  normalized_from_world, plan);
       } catch (const sfm::InputError& error) {
         loaded[i].failure = error.what();
       }
@@ -202,6 +249,11 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
     throw sfm::InputError("{}: no image is left to train on{}{}", posed.source.string(),
                           data.skipped.empty() ? "" : "; the first failed so: ",
                           data.skipped.empty() ? "" : data.skipped.front());
+  }
+  if (data.has_alpha && !ShowsSomething(data.train)) {
+    throw sfm::InputError(
+        "{}: every photograph is transparent everywhere; mend their alpha (or masks), or remove it",
+        posed.source.string());
   }
   return data;
 }

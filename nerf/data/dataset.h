@@ -4,10 +4,12 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "nerf/data/image.h"
+#include "nerf/data/mask.h"
 #include "sfm/posed_images.h"
 #include "sfm/scene_normalization.h"
 
@@ -48,10 +50,16 @@ struct View {
   Eigen::Isometry3d normalized_from_camera;  // OpenCV axes
   std::vector<Eigen::half> rgba;             // [held,4], straight alpha
   std::uint64_t seed = 0;                    // of the choice
+  std::vector<std::uint32_t> whole;          // pixels to choose from, rising; empty: all
 
   std::int64_t Held() const { return static_cast<std::int64_t>(rgba.size() / 4); }
   // Where the held pixel k stands: y * width + x.
   std::int64_t PixelOf(std::int64_t k) const;
+  // The held pixel that stands at a place or near it.
+  std::int64_t HeldNear(std::int64_t pixel) const;
+
+ private:
+  std::int64_t Choices() const;
 };
 
 struct Dataset {
@@ -62,15 +70,28 @@ struct Dataset {
   std::vector<std::string> skipped;  // photographs that could not be read, with the reason
 };
 
+// How photographs are read: how small, and what their masks mean where they count.
+struct PhotographOptions {
+  int downscale = 1;
+  std::optional<MaskOptions> masks;
+};
+
 // Reads the training and validation photographs on all threads, or on as many as can decode at once
 // within that much memory again, at least one. A photograph that cannot be read is
 // named in `skipped` and left out. Throws sfm::InputError when none is left to train on, when sRGB
 // and linear images are mixed, or when an image is not of its camera's size.
+// Pixels that a mask says to ignore are not held, and never drawn.
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
+                    const std::optional<MaskOptions>& masks,
                     const sfm::SceneNormalization& normalized_from_world);
 
 // One photograph as evaluation and training see it: upright, downscaled, 3 or 4 channels.
-Image LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image, int downscale);
+struct Photograph {
+  Image pixels;
+  std::vector<std::uint32_t> whole;  // pixels that no mask says to ignore, rising; empty: all
+};
+Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image,
+                          const PhotographOptions& options);
 
 // What is seen through transparent pixels wherever a picture is made: white where photographs have
 // alpha (the NeRF-synthetic protocol), black elsewhere.

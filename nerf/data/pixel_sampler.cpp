@@ -44,12 +44,9 @@ PixelSampler::PixelSampler(const std::vector<View>& views, double error_driven_s
 
 PixelSampler::Drawn PixelSampler::Draw(std::uint64_t bits) const {
   constexpr std::uint64_t kChoice = 0x63686f6963655f5full, kPlace = 0x706c6163655f5f5full;
-  if (errors_ &&
-      static_cast<double>(Mix64(bits ^ kChoice) >> 11) * 0x1p-53 < error_driven_share_) {
+  if (errors_ && static_cast<double>(Mix64(bits ^ kChoice) >> 11) * 0x1p-53 < error_driven_share_) {
     const ErrorMap::Pixel pixel = errors_->Draw(Mix64(bits ^ kPlace));
-    const View& view = views_[pixel.view];
-    const std::int64_t all = std::int64_t{view.camera.width} * view.camera.height;
-    return {pixel.view, pixel.index * view.Held() / all};  // or the nearest that is held
+    return {pixel.view, views_[pixel.view].HeldNear(pixel.index)};
   }
   const auto global =
       static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(first_pixel_.back()));
@@ -61,6 +58,7 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
   TargetBatch batch;
   batch.rays.Resize(rays);
   batch.rgb.resize(3 * rays);
+  batch.photograph.resize(rays);
   if (errors_) batch.cell.resize(rays);
   // A pixel that its lens does not reach is drawn again, so often that only a broken lens fails.
   constexpr std::uint64_t kMostDraws = 256;
@@ -80,6 +78,7 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
         const Eigen::Vector2d centre(static_cast<double>(pixel % view.camera.width) + 0.5,
                                      static_cast<double>(pixel / view.camera.width) + 0.5);
         if (!SetRay(batch.rays, r, view.camera, view.normalized_from_camera, centre)) continue;
+        batch.photograph[r] = static_cast<std::int64_t>(v);
         if (errors_) batch.cell[r] = errors_->CellOf({v, pixel});
         const Eigen::half* rgba = &view.rgba[4 * held];
         const auto alpha = static_cast<float>(rgba[3]);

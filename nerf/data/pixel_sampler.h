@@ -15,7 +15,8 @@ namespace nerf {
 struct TargetBatch {
   RayBatch rays;
   std::vector<float> rgb;  // [R,3] composited on the ray's background where the photo has alpha
-  std::vector<std::int64_t> cell;  // [R] of the error map; empty where there is none
+  std::vector<std::int64_t> photograph;  // [R] which of the views
+  std::vector<std::int64_t> cell;        // [R] of the error map; empty where there is none
 };
 
 // Draws pixels of the training views as rays: each equally likely, but for a share of them that

@@ -2,6 +2,9 @@
 
 namespace nerf {
 
+// Whether colour depends on the direction from which it is seen, or, as a matt surface's, does not.
+enum class ColorModel { kDiffuse, kByDirection };
+
 // The networks behind the hash encoding; sizes as in Mueller et al. 2022, section 5.4.
 struct FieldOptions {
   int hidden_width = 64;       // neurons in each hidden layer of both networks

@@ -13,8 +13,9 @@ namespace {
 // Levels that show at no detail at all: cells of an eighth and less of the unit ball.
 constexpr double kCoarsestLevels = 2.0;
 
-std::vector<std::int64_t> ColorWidths(const FieldOptions& options) {
-  std::vector<std::int64_t> widths = {options.geometry_features + kDirectionFeatures};
+std::vector<std::int64_t> ColorWidths(const FieldOptions& options, ColorModel color_model) {
+  std::vector<std::int64_t> widths = {options.geometry_features};
+  if (color_model == ColorModel::kByDirection) widths[0] += kDirectionFeatures;
   widths.insert(widths.end(), options.color_layers, options.hidden_width);
   widths.push_back(3);
   return widths;
@@ -23,8 +24,10 @@ std::vector<std::int64_t> ColorWidths(const FieldOptions& options) {
 }  // namespace
 
 RadianceField::RadianceField(const kernels::HashGridOptions& grid, const FieldOptions& options,
-                             ColorEncoding encoding, std::uint64_t seed)
-    : encoding_(encoding), geometry_features_(options.geometry_features) {
+                             ColorEncoding encoding, std::uint64_t seed, ColorModel color_model)
+    : encoding_(encoding),
+      color_model_(color_model),
+      geometry_features_(options.geometry_features) {
   hash_encoding_ =
       register_module("hash_encoding", std::make_shared<HashEncoding>(grid, Mix64(seed + 0)));
   density_network_ = register_module(
@@ -33,8 +36,8 @@ RadianceField::RadianceField(const kernels::HashGridOptions& grid, const FieldOp
           std::vector<std::int64_t>{hash_encoding_->Layout().OutputSize(), options.hidden_width,
                                     1 + options.geometry_features},
           Mix64(seed + 1)));
-  color_network_ = register_module("color_network",
-                                   std::make_shared<Mlp>(ColorWidths(options), Mix64(seed + 2)));
+  color_network_ = register_module(
+      "color_network", std::make_shared<Mlp>(ColorWidths(options, color_model), Mix64(seed + 2)));
 }
 
 void RadianceField::SetDetail(double detail) { detail_ = std::clamp(detail, 0.0, 1.0); }
@@ -71,9 +74,13 @@ FieldOutput RadianceField::forward(const torch::Tensor& positions, const torch::
                                    const torch::Tensor& ray) {
   const torch::Tensor out = density_network_->forward(Encode(positions));
   const torch::Tensor geometry = out.slice(1, 1);
-  // Encoded once a ray, then dealt to the ray's samples.
-  const torch::Tensor view = (detail_ * EncodeDirections(directions)).index_select(0, ray);
-  const torch::Tensor color = color_network_->forward(torch::cat({geometry, view}, 1));
+  torch::Tensor color_input = geometry;
+  if (color_model_ == ColorModel::kByDirection) {
+    // Encoded once a ray, then dealt to the ray's samples.
+    const torch::Tensor view = (detail_ * EncodeDirections(directions)).index_select(0, ray);
+    color_input = torch::cat({geometry, view}, 1);
+  }
+  const torch::Tensor color = color_network_->forward(color_input);
   return {ActivateDensity(out.select(1, 0)) * RadialShrinkage(positions),
           encoding_ == ColorEncoding::kSrgb ? torch::sigmoid(color) : TruncatedExp(color)};
 }

@@ -19,13 +19,14 @@ struct FieldOutput {
 };
 
 // The parameters: a hash encoding of position, a density network, a colour network that also sees
-// the direction. Source: Mueller et al. 2022, section 5.4.
+// the direction, unless colour is diffuse. Source: Mueller et al. 2022, section 5.4.
 class RadianceField : public torch::nn::Module {
  public:
   // encoding of colour: sRGB-encoded fields end in a sigmoid, linear ones in a truncated
   // exponential.
   RadianceField(const kernels::HashGridOptions& grid, const FieldOptions& options,
-                ColorEncoding encoding, std::uint64_t seed);
+                ColorEncoding encoding, std::uint64_t seed,
+                ColorModel color_model = ColorModel::kByDirection);
 
   // positions [S,3] in the unit cube -> [S], 1 / normalized scene unit
   torch::Tensor Density(const torch::Tensor& positions);
@@ -53,6 +54,7 @@ class RadianceField : public torch::nn::Module {
 
   torch::Dtype Dtype() const;
   ColorEncoding Encoding() const { return encoding_; }
+  ColorModel GetColorModel() const { return color_model_; }
   const HashEncoding& Hash() const { return *hash_encoding_; }
   const Mlp& DensityNetwork() const { return *density_network_; }
   const Mlp& ColorNetwork() const { return *color_network_; }
@@ -61,6 +63,7 @@ class RadianceField : public torch::nn::Module {
   torch::Tensor Encode(const torch::Tensor& positions);
 
   ColorEncoding encoding_;
+  ColorModel color_model_;
   double detail_ = 1;
   int geometry_features_;
   std::shared_ptr<HashEncoding> hash_encoding_;

@@ -35,19 +35,11 @@ struct HashGridLayout {
 
 HashGridLayout MakeHashGridLayout(const HashGridOptions& options);
 
-// The factors of the spatial hash. Source: Teschner et al. 2003; the first axis has factor 1.
+// The factors of the spatial hash: the entry of vertex (x, y, z) is x ^ (y kHashPrimeY) ^
+// (z kHashPrimeZ), the first axis having the factor 1; where it is dense, x + side (y + side z).
+// Source: Teschner et al. 2003.
 inline constexpr std::uint32_t kHashPrimeY = 2654435761u;
 inline constexpr std::uint32_t kHashPrimeZ = 805459861u;
-
-// Entry of the lattice vertex (x, y, z) within its level.
-inline std::uint32_t HashGridIndex(const HashGridLevel& level, std::uint32_t x, std::uint32_t y,
-                                   std::uint32_t z) {
-  if (level.dense) {
-    const std::uint32_t side = level.resolution + 1;
-    return x + side * (y + side * z);
-  }
-  return (x ^ (y * kHashPrimeY) ^ (z * kHashPrimeZ)) & (level.size - 1);
-}
 
 // Trilinear interpolation of the entries at the 8 corners of the cell that holds each position.
 //   table      [entries, features]

@@ -31,14 +31,15 @@ void TileField::Radiance(std::int64_t samples, std::span<const std::int64_t> ray
   tile.color.Resize(color_, samples);
   const int in_row = PaddedWidth(color_.Width(0));
   std::array<float, kDirectionFeatures> view{};
+  const int view_features = color_.Width(0) - geometry_features_;  // none where colour is diffuse
   for (std::int64_t i = 0; i < samples; ++i) {
-    if (i == 0 || ray[i] != ray[i - 1]) {
+    if (view_features > 0 && (i == 0 || ray[i] != ray[i - 1])) {
       kernels::EncodeDirection(directions.subspan(3 * ray[i]).first<3>(), view);
       for (float& feature : view) feature *= direction_weight_;
     }
     float* const in = tile.color.rows[0] + i * in_row;
     std::copy_n(density_.Output(tile.density, i) + 1, geometry_features_, in);
-    std::copy(view.begin(), view.end(), in + geometry_features_);
+    std::copy_n(view.begin(), view_features, in + geometry_features_);
     std::fill(in + color_.Width(0), in + in_row, 0.0f);
   }
   color_.Forward(samples, tile.color.rows);

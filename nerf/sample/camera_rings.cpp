@@ -92,7 +92,8 @@ sfm::PosedImages CameraRings(const SampleOptions& options) {
                               std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
       const Vector3d target = kSubject + 0.08 * irregular.NextPoint();
       sfm::PosedImage image;
-      image.name = fmt::format("view_{:03}.png", posed.images.size());
+      image.name = fmt::format("view_{:03}.{}", posed.images.size(),
+                               options.occasion == Occasion::kHdr ? "exr" : "png");
       image.world_from_camera = LookAt(position, target, 3 * kDegree * irregular.Next());
       posed.images.push_back(image);
     }

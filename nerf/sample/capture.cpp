@@ -56,26 +56,72 @@ Color PixelRadiance(const Scene& scene, const sfm::Camera& camera,
   return sum / samples_per_pixel;
 }
 
-void StorePhoto(const Color& radiance, float* pixel) {
+// What a camera stores of the light of a pixel.
+void StorePhoto(const Color& radiance, const Photography& photography, float* pixel) {
   for (int c = 0; c < 3; ++c) {
-    pixel[c] = SrgbFromLinear(std::clamp(static_cast<float>(radiance[c]), 0.0f, 1.0f));
+    const auto light = static_cast<float>(radiance[c] * photography.gain[c]);
+    pixel[c] = photography.linear ? light : SrgbFromLinear(std::clamp(light, 0.0f, 1.0f));
   }
+}
+
+// The part of a pixel in which rays meet something. Colour is straight: where a pixel is met in
+// part, the light is that of the part.
+double Coverage(const Scene& scene, const sfm::Camera& camera,
+                const Eigen::Isometry3d& world_from_camera, int x, int y, int samples_per_pixel,
+                unsigned seed) {
+  const Vector2d shift(UnitFromHash(Hash(x, y, 0, seed)), UnitFromHash(Hash(x, y, 1, seed)));
+  int met = 0;
+  for (int i = 0; i < samples_per_pixel; ++i) {
+    const Vector2d pixel = Vector2d(x, y) + SpreadPoint(i, shift);
+    if (Trace(scene, RayThrough(camera, world_from_camera, pixel))) ++met;
+  }
+  return static_cast<double>(met) / samples_per_pixel;
+}
+
+// Whether somebody is to be seen in a pixel or in one beside it.
+bool Passes(const Object& passer_by, const sfm::Camera& camera,
+            const Eigen::Isometry3d& world_from_camera, int x, int y) {
+  for (const double dy : {-0.5, 0.5, 1.5}) {
+    for (const double dx : {-0.5, 0.5, 1.5}) {
+      const Vector2d pixel(std::clamp(x + dx, 0.0, static_cast<double>(camera.width)),
+                           std::clamp(y + dy, 0.0, static_cast<double>(camera.height)));
+      if (Intersect(passer_by.shape, RayThrough(camera, world_from_camera, pixel))) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
 
 View RenderView(const Scene& scene, const sfm::Camera& camera,
-                const Eigen::Isometry3d& world_from_camera, int samples_per_pixel, unsigned seed) {
+                const Eigen::Isometry3d& world_from_camera, int samples_per_pixel, unsigned seed,
+                const Photography& photography) {
   const int width = camera.width;
   const int height = camera.height;
-  View view{Image(width, height, 3, ColorEncoding::kSrgb),
-            Image(width, height, 1, ColorEncoding::kLinear),
+  View view{Image(width, height, photography.alpha ? 4 : 3,
+                  photography.linear ? ColorEncoding::kLinear : ColorEncoding::kSrgb),
+            std::nullopt, Image(width, height, 1, ColorEncoding::kLinear),
             Image(width, height, 3, ColorEncoding::kLinear),
             Image(width, height, 3, ColorEncoding::kLinear)};
+  if (photography.mask) view.mask = Image(width, height, 1);
+  Scene photographed = scene;
+  if (photography.passer_by) photographed.objects.push_back(*photography.passer_by);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      StorePhoto(PixelRadiance(scene, camera, world_from_camera, x, y, samples_per_pixel, seed),
-                 view.photo.At(x, y));
+      Color light =
+          PixelRadiance(photographed, camera, world_from_camera, x, y, samples_per_pixel, seed);
+      if (photography.alpha) {
+        const double alpha =
+            Coverage(photographed, camera, world_from_camera, x, y, samples_per_pixel, seed);
+        if (alpha > 0) light /= alpha;
+        view.photo.At(x, y)[3] = static_cast<float>(alpha);
+      }
+      StorePhoto(light, photography, view.photo.At(x, y));
+      if (view.mask) {
+        const bool passes = photography.passer_by &&
+                            Passes(*photography.passer_by, camera, world_from_camera, x, y);
+        *view.mask->At(x, y) = passes ? 0.0f : 1.0f;
+      }
       const Vector2d center(x + 0.5, y + 0.5);
       const auto hit = Trace(scene, RayThrough(camera, world_from_camera, center));
       if (!hit) continue;
@@ -94,8 +140,10 @@ void RenderViews(const Scene& scene, const sfm::PosedImages& posed, const Sample
   std::mutex consuming;
   sfm::ParallelFor(count, options.threads, [&](int i) {
     const sfm::PosedImage& image = posed.images[i];
-    View view = RenderView(scene, posed.cameras[image.camera], image.world_from_camera,
-                           options.samples_per_pixel, Hash(i, 0, 0, options.seed));
+    View view =
+        RenderView(scene, posed.cameras[image.camera], image.world_from_camera,
+                   options.samples_per_pixel, Hash(i, 0, 0, options.seed),
+                   PhotographyOf(options.occasion, i, options.seed, image.world_from_camera));
     const std::lock_guard lock(consuming);
     consume(i, std::move(view));
   });
@@ -105,7 +153,7 @@ Capture MakeCapture(const SampleOptions& options) {
   Capture capture;
   capture.posed = CameraRings(options);
   capture.views.resize(capture.posed.images.size());
-  RenderViews(BuiltInScene(), capture.posed, options,
+  RenderViews(SceneOf(options.occasion), capture.posed, options,
               [&](int i, View view) { capture.views[i] = std::move(view); });
   return capture;
 }

@@ -9,6 +9,8 @@
 #include "nerf/data/image_io.h"
 #include "nerf/sample/camera_rings.h"
 #include "nerf/sample/capture.h"
+#include "nerf/sample/sparse_points.h"
+#include "sfm/colmap_text_writer.h"
 #include "sfm/input_error.h"
 #include "sfm/progress.h"
 #include "sfm/transforms_json.h"
@@ -19,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kMap[] = {"depth", "normal", "albedo"};
+constexpr const char* kParts[] = {"images", "masks", "truth", "truth/sparse"};
+constexpr const char* kSparse = "sparse";  // folder of a COLMAP model, in truth
 
 std::string MapName(const std::string& photo, const std::string& map) {
   return fs::path(photo).stem().string() + "." + map + ".exr";
@@ -27,8 +31,8 @@ std::string MapName(const std::string& photo, const std::string& map) {
 // Whether a file carries a name that WriteSample gives, or that a writer of ours gives to a file it
 // has not finished: what an interrupted run leaves behind must not stand in the way of the next.
 bool IsOurs(const std::string& name) {
-  static const std::regex ours(R"(view_\d{3}\.(png|depth\.exr|normal\.exr|albedo\.exr))"
-                               R"(|transforms\.json(\.tmp\d+)?)"
+  static const std::regex ours(R"(view_\d{3}\.(png|exr|depth\.exr|normal\.exr|albedo\.exr))"
+                               R"(|(transforms\.json|(cameras|images|points3D)\.txt)(\.tmp\d+)?)"
                                R"(|\.view_\d{3}\..*)");
   return std::regex_match(name, ours);
 }
@@ -50,9 +54,10 @@ void RefuseForeignContent(const fs::path& folder) {
     throw sfm::InputError("{} holds files that are no sample: choose an empty or a new folder",
                           folder.string());
   }
-  for (const char* part : {"images", "truth"}) {
+  for (const char* part : kParts) {
     for (const fs::path& file : FilesIn(folder / part)) {
-      if (IsOurs(file.filename().string()) && !fs::is_directory(file)) continue;
+      const std::string name = file.filename().string();
+      if (fs::is_directory(file) ? name == kSparse : IsOurs(name)) continue;
       throw sfm::InputError("{} is no part of a sample: choose an empty or a new folder",
                             file.string());
     }
@@ -60,13 +65,16 @@ void RefuseForeignContent(const fs::path& folder) {
 }
 
 // Views of an earlier, longer sample would be taken for views of this one.
-void RemoveWhatIsLeftOver(const fs::path& folder, const sfm::PosedImages& posed) {
-  std::set<std::string> wanted = {"transforms.json"};
+void RemoveWhatIsLeftOver(const fs::path& folder, const sfm::PosedImages& posed,
+                          Occasion occasion) {
+  if (occasion != Occasion::kMasks) fs::remove_all(folder / "masks");
+  std::set<std::string> wanted = {"transforms.json", kSparse, "cameras.txt", "images.txt",
+                                  "points3D.txt"};
   for (const auto& image : posed.images) {
     wanted.insert(image.name);
     for (const char* map : kMap) wanted.insert(MapName(image.name, map));
   }
-  for (const char* part : {"images", "truth"}) {
+  for (const char* part : kParts) {
     for (const fs::path& file : FilesIn(folder / part)) {
       if (!wanted.contains(file.filename().string())) fs::remove(file);
     }
@@ -75,6 +83,9 @@ void RemoveWhatIsLeftOver(const fs::path& folder, const sfm::PosedImages& posed)
 
 void WriteView(const fs::path& folder, const std::string& name, const View& view) {
   WriteImage(folder / "images" / name, view.photo);
+  if (view.mask) {
+    WriteImage(folder / "masks" / fs::path(name).replace_extension(".png"), *view.mask);
+  }
   WriteImage(folder / "truth" / MapName(name, "depth"), view.depth);
   WriteImage(folder / "truth" / MapName(name, "normal"), view.normal);
   WriteImage(folder / "truth" / MapName(name, "albedo"), view.albedo);
@@ -88,18 +99,22 @@ void WriteSample(const fs::path& folder, const SampleOptions& options) {
   try {
     RefuseForeignContent(folder);
     // `truth` comes first: it is the mark by which a folder is known as a sample.
-    fs::create_directories(folder / "truth");
+    fs::create_directories(folder / "truth" / "sparse");
     fs::create_directories(folder / "images");
-    RemoveWhatIsLeftOver(folder, posed);
+    if (options.occasion == Occasion::kMasks) fs::create_directories(folder / "masks");
+    RemoveWhatIsLeftOver(folder, posed, options.occasion);
   } catch (const fs::filesystem_error& e) {
     throw sfm::InputError("{} cannot be written ({}): choose a folder that is yours",
                           folder.string(), e.code().message());
   }
   sfm::WriteTransformsJson(posed, folder / "truth" / "transforms.json");
+  const Scene scene = SceneOf(options.occasion);
+  posed.points = SparsePoints(scene, posed, options);
+  sfm::WriteColmapText(posed, folder / "truth" / "sparse");
   sfm::ProgressLine progress("rendering", options.views);
   progress.Update(0);
   int done = 0;
-  RenderViews(BuiltInScene(), posed, options, [&](int i, const View& view) {
+  RenderViews(scene, posed, options, [&](int i, const View& view) {
     WriteView(folder, posed.images[i].name, view);
     progress.Update(++done, posed.images[i].name);
   });

@@ -6,10 +6,12 @@
 
 namespace nerf::sample {
 
-// Photographs the built-in scene into a folder, which is made where it does not exist:
-//   images/view_000.png, ...        photographs, 8-bit sRGB, all that structure from motion and
-//                                   training may see
+// Photographs the scene of options.occasion into a folder, which is made where it does not exist:
+//   images/view_000.png, ...        photographs, 8-bit sRGB (or .exr, radiance), all that structure
+//                                   from motion and training may see
+//   masks/view_000.png              where the occasion is masks
 //   truth/transforms.json           true poses, pointing at ../images
+//   truth/sparse/                   the same as a COLMAP model, with points and who sees them
 //   truth/view_000.depth.exr        distance along the ray, scene units
 //   truth/view_000.normal.exr       unit normals, world axes
 //   truth/view_000.albedo.exr       linear

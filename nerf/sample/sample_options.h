@@ -1,9 +1,12 @@
 #pragma once
 
+#include "nerf/sample/occasion.h"
+
 namespace nerf::sample {
 
 // How the sample is photographed.
 struct SampleOptions {
+  Occasion occasion = Occasion::kBuiltIn;
   int views = 36;             // photographs, 2..1000
   int width = 400;            // pixels, up to 8192
   int height = 300;           // pixels, up to 8192

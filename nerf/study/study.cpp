@@ -103,7 +103,8 @@ const Study::Photographs& Study::Read(const Config& config) {
   const auto [found, is_new] = photographs_.try_emplace(config.data.downscale);
   if (is_new) {
     const Stopwatch watch;
-    found->second.data = LoadDataset(posed_, config.data, normalized_from_world_);
+    found->second.data =
+        LoadDataset(posed_, config.data, config.effects.masks, normalized_from_world_);
     found->second.seconds = watch.Seconds();
   }
   return found->second;
@@ -121,8 +122,7 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
   sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
   sfm::WriteTransformsJson(posed_, PosesPath(run));
   const Photographs& photographs = Read(config);
-  const SceneFacts scene = {photographs.data.encoding, photographs.data.has_alpha,
-                            normalized_from_world_};
+  const SceneFacts scene = FactsOf(photographs.data, normalized_from_world_);
   const Stopwatch watch;
   Trainer trainer(config, scene, photographs.data, run);
   const TrainSummary summary = trainer.Run(stop);
@@ -141,7 +141,8 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
     const auto renderer = ViewRenderer(trainer.GetModel(), quality);
     double psnr = 0, ssim = 0, frame = 0;
     for (const sfm::PosedImage* image : held_out_) {
-      const Image truth = OnWhite(LoadPhotograph(posed_, *image, options_.downscale));
+      const Image truth = OnWhite(
+          LoadPhotograph(posed_, *image, {options_.downscale, config.effects.masks}).pixels);
       const Stopwatch of_frame;
       const RenderedView view =
           RenderView(*renderer, Downscaled(posed_.cameras[image->camera], options_.downscale),

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "nerf/data/pixel_sampler.h"
+#include "nerf/effects/effects_options.h"
 #include "nerf/kernels/mlp.h"
 #include "nerf/render/ray_renderer.h"
 #include "nerf/sampling/proposal_options.h"
@@ -14,6 +16,8 @@
 
 namespace nerf {
 
+class Background;
+class Exposure;
 class OccupancyGrid;
 class ProposalField;
 class RadianceField;
@@ -23,7 +27,9 @@ struct StepResult {
   double squared_error = 0;  // mean over rays and channels, for PSNR
   std::int64_t marched = 0;  // samples in occupied cells
   std::int64_t shaded = 0;   // samples of them that light reaches, on which gradients were taken
-  std::vector<float> ray_error;  // [R] squared error of each ray, mean over channels
+  // [R] squared error of each ray, mean over channels; of a robust loss, the part of it that pulls:
+  // rays are not to be drawn where somebody passes by.
+  std::vector<float> ray_error;
   StageSeconds seconds;
 };
 
@@ -35,9 +41,13 @@ struct EngineParts {
   MarchOptions march;
   ProposalOptions proposal_options;
   LossOptions loss;
+  std::optional<RobustOptions> robust;
   GradientScalingOptions gradient_scaling;
   // Of the networks' products in FusedEngine; LibTorchEngine is exact to float.
   kernels::Precision precision = kernels::Precision::kFloat;
+  // Effects; null where they are not simulated.
+  std::shared_ptr<Background> background;
+  std::shared_ptr<Exposure> exposure;
 };
 
 // Evaluates rays, with gradients or without. Two engines, one meaning: LibTorchEngine composes

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "nerf/render/field_tile.h"
-#include "nerf/render/proposal_tile.h"
+#include "nerf/effects/background_map.h"
 #include "nerf/train/engine.h"
+#include "nerf/train/fused_forward.h"
+#include "nerf/train/pixel_loss.h"
 
 namespace nerf {
 
@@ -22,20 +22,17 @@ class FusedEngine : public Engine {
   void UpdateOccupancy(std::int64_t step, std::uint64_t seed) override;
 
  private:
-  struct Tile;
   struct Worker;
   void Refresh();
-  std::int64_t PlaceSamples(const RayBatch& rays, std::int64_t first, std::int64_t last,
-                            Tile& tile) const;
-  void KeepVisible(Tile& tile) const;
-  std::int64_t Forward(const RayBatch& rays, std::int64_t first, std::int64_t last,
-                       Tile& tile) const;
+  RenderOutput RenderRays(const RayBatch& rays) const;
+  StepResult LearnFrom(const TargetBatch& batch);
   void Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
                 std::span<float> ray_error) const;
 
   EngineParts parts_;
-  TileField field_;
-  std::optional<TileProposal> proposal_;
+  FusedForward forward_;
+  BackgroundMap background_;  // where it is learned
+  PixelModel pixel_model_;
   std::vector<Worker> workers_;  // one a thread
 };
 

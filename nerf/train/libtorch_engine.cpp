@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nerf/effects/background.h"
+#include "nerf/effects/exposure.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
 #include "nerf/parallel.h"
@@ -114,10 +116,11 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
   out.field = parts_.field->forward(positions, directions, ray);
   ScaleGradients(out.field, t, parts_.gradient_scaling.full_distance);
 
+  const torch::Tensor background = parts_.background ? parts_.background->forward(directions)
+                                                     : TensorOf(rays.background, {count, 3}, dtype);
   out.pixels =
       RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong), out.field.sigma,
-                   out.field.radiance, TensorOf(out.samples.dt, {size}, dtype), t,
-                   TensorOf(rays.background, {count, 3}, dtype));
+                   out.field.radiance, TensorOf(out.samples.dt, {size}, dtype), t, background);
   return out;
 }
 
@@ -148,12 +151,17 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   const Evaluated out = Evaluate(batch.rays);
   const torch::Tensor target =
       TensorOf(batch.rgb, {batch.rays.Size(), 3}, out.pixels.rgb.scalar_type());
-  const torch::Tensor loss = ColorLoss(out.pixels.rgb, target, parts_.loss);
+  torch::Tensor rgb = out.pixels.rgb;
+  if (parts_.exposure) {
+    rgb = parts_.exposure->forward(
+        rgb, TensorOf(batch.photograph, {batch.rays.Size()}, torch::kLong), target);
+  }
+  const torch::Tensor loss = ColorLoss(rgb, target, parts_.loss, parts_.robust);
   StepResult result;
   result.loss = loss.item<double>();
   if (!std::isfinite(result.loss)) {
     throw NonFiniteError("the loss is not finite: " +
-                         DescribeNonFinite(out.samples, out.field, out.pixels.rgb, target));
+                         DescribeNonFinite(out.samples, out.field, rgb, target));
   }
   torch::Tensor total = loss;
   if (parts_.proposal) {
@@ -162,11 +170,12 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   }
   // A batch whose rays meet no occupied cell has no parameters to blame.
   if (total.requires_grad()) total.backward();
-  const torch::Tensor of_ray =
-      (out.pixels.rgb.detach() - target).square().mean(1).to(torch::kFloat).contiguous();
+  torch::Tensor of_ray = (rgb.detach() - target).square().mean(1);
+  result.squared_error = of_ray.mean().item<double>();
+  if (parts_.robust) of_ray = of_ray * RobustPull(rgb, target, parts_.loss, *parts_.robust);
+  of_ray = of_ray.to(torch::kFloat).contiguous();
   const auto ray_error = Span<const float>(of_ray);
   result.ray_error.assign(ray_error.begin(), ray_error.end());
-  result.squared_error = torch::mse_loss(out.pixels.rgb.detach(), target).item<double>();
   result.marched = out.marched;
   result.shaded = out.samples.Size();
   return result;

@@ -2,13 +2,33 @@
 
 namespace nerf {
 
-torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& target,
-                        const LossOptions& options) {
+namespace {
+
+// [R], the mean over the channels of each ray.
+torch::Tensor LossOfRays(const torch::Tensor& predicted, const torch::Tensor& target,
+                         const LossOptions& options) {
   TORCH_CHECK(predicted.sizes() == target.sizes(), "ColorLoss: predicted ", predicted.sizes(),
               " and target ", target.sizes(), " differ in shape");
-  if (options.kind == "mse") return torch::mse_loss(predicted, target);
-  return torch::huber_loss(predicted, target, at::Reduction::Mean, options.huber_delta) /
-         options.huber_delta;
+  const torch::Tensor loss =
+      options.kind == "mse"
+          ? torch::mse_loss(predicted, target, at::Reduction::None)
+          : torch::huber_loss(predicted, target, at::Reduction::None, options.huber_delta) /
+                options.huber_delta;
+  return loss.mean(1);
+}
+
+}  // namespace
+
+torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& target,
+                        const LossOptions& options, const std::optional<RobustOptions>& robust) {
+  const torch::Tensor of_ray = LossOfRays(predicted, target, options);
+  return (robust ? of_ray / (1 + of_ray / robust->scale) : of_ray).mean();
+}
+
+torch::Tensor RobustPull(const torch::Tensor& predicted, const torch::Tensor& target,
+                         const LossOptions& options, const RobustOptions& robust) {
+  const torch::NoGradGuard no_grad;
+  return (1 + LossOfRays(predicted, target, options) / robust.scale).pow(-2);
 }
 
 }  // namespace nerf

@@ -2,14 +2,23 @@
 
 #include <torch/torch.h>
 
+#include <optional>
+
+#include "nerf/effects/effects_options.h"
 #include "nerf/train/train_options.h"
 
 namespace nerf {
 
 // Mean over rays and channels of the squared error, or of Huber's: e^2/2 for |e| <= delta,
-// delta (|e| - delta/2) beyond, divided by delta. Source: Huber 1964.
+// delta (|e| - delta/2) beyond, divided by delta. Source: Huber 1964. Where it is to be robust, the
+// mean over rays of l / (1 + l / scale), l being a ray's mean over channels (RobustOptions).
 //   predicted, target  [R,3]
 torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& target,
-                        const LossOptions& options);
+                        const LossOptions& options, const std::optional<RobustOptions>& robust);
+
+// The part of each ray's pull that a robust loss leaves, [R]: 1 / (1 + l / scale)^2. Without
+// gradients.
+torch::Tensor RobustPull(const torch::Tensor& predicted, const torch::Tensor& target,
+                         const LossOptions& options, const RobustOptions& robust);
 
 }  // namespace nerf

@@ -1,7 +1,10 @@
 #include "nerf/train/model.h"
 
+#include <algorithm>
 #include <cstring>
 
+#include "nerf/effects/background.h"
+#include "nerf/effects/exposure.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/field/tensor_span.h"
@@ -28,13 +31,15 @@ json JsonFromScene(const SceneFacts& scene) {
           {"has_alpha", scene.has_alpha},
           {"scale", n.scale},
           {"rotation", rotation},
-          {"translation", translation}};
+          {"translation", translation},
+          {"photographs", scene.photographs}};
 }
 
 SceneFacts SceneFromJson(const json& scene) {
   SceneFacts facts;
   facts.encoding = scene.at("encoding") == "srgb" ? ColorEncoding::kSrgb : ColorEncoding::kLinear;
   facts.has_alpha = scene.at("has_alpha");
+  facts.photographs = scene.value("photographs", std::vector<std::string>());
   sfm::SceneNormalization& n = facts.normalized_from_world;
   n.scale = scene.at("scale");
   for (int i = 0; i < 9; ++i) n.rotation(i / 3, i % 3) = scene.at("rotation").at(i);
@@ -63,6 +68,12 @@ void CheckSizes(const Config& config, bool with_proposal, const Checkpoint& chec
 
 }  // namespace
 
+SceneFacts FactsOf(const Dataset& data, const sfm::SceneNormalization& normalized_from_world) {
+  SceneFacts facts = {data.encoding, data.has_alpha, normalized_from_world, {}, {}};
+  for (const View& view : data.train) facts.photographs.push_back(view.name);
+  return facts;
+}
+
 kernels::Precision PrecisionOf(const Config& config) {
   return config.train.precision == "bfloat16" ? kernels::Precision::kBfloat16
                                               : kernels::Precision::kFloat;
@@ -72,15 +83,38 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   Model model;
   model.config = config;
   model.scene = scene;
-  model.field = std::make_shared<RadianceField>(config.encoding, config.field, scene.encoding,
-                                                config.train.seed);
+  model.field = std::make_shared<RadianceField>(
+      config.encoding, config.field, scene.encoding, config.train.seed,
+      config.effects.view ? ColorModel::kByDirection : ColorModel::kDiffuse);
   model.grid = std::make_shared<OccupancyGrid>(config.occupancy, config.march.StepLength());
   if (UsesProposal(config.march, scene.has_alpha)) {
     model.proposal = std::make_shared<ProposalField>(config.proposal, config.train.seed);
   }
-  const EngineParts parts = {
-      model.field,     model.grid,  model.proposal,          config.march,
-      config.proposal, config.loss, config.gradient_scaling, PrecisionOf(config)};
+  if (config.effects.background) {
+    if (scene.has_alpha) {
+      throw sfm::InputError(
+          "effects.background: photographs with alpha show no background to learn; set "
+          "effects.background=null");
+    }
+    model.background = std::make_shared<Background>(*config.effects.background, scene.encoding);
+  }
+  if (config.effects.exposure) {
+    model.exposure = std::make_shared<Exposure>(static_cast<std::int64_t>(scene.photographs.size()),
+                                                scene.encoding);
+    if (!scene.exposure_stops.empty()) model.exposure->Start(scene.exposure_stops);
+  }
+  EngineParts parts;
+  parts.field = model.field;
+  parts.grid = model.grid;
+  parts.proposal = model.proposal;
+  parts.march = config.march;
+  parts.proposal_options = config.proposal;
+  parts.loss = config.loss;
+  parts.gradient_scaling = config.gradient_scaling;
+  parts.robust = config.effects.robust;
+  parts.background = model.background;
+  parts.exposure = model.exposure;
+  parts.precision = PrecisionOf(config);
   if (config.train.engine == "fused") {
     model.engine = std::make_shared<FusedEngine>(parts);
   } else {
@@ -89,16 +123,35 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   return model;
 }
 
+std::array<float, 3> GainsOf(const Model& model, const std::string& photograph) {
+  if (!model.exposure) {
+    throw sfm::InputError(
+        "--exposure-of {}: the run simulates no exposures; train with --set effects.exposure={{}}",
+        photograph);
+  }
+  const std::vector<std::string>& names = model.scene.photographs;
+  const auto found = std::ranges::find(names, photograph);
+  if (found == names.end()) {
+    throw sfm::InputError(
+        "--exposure-of {}: not among the {} photographs of the training; one is {}", photograph,
+        names.size(), names.front());
+  }
+  const torch::NoGradGuard no_grad;
+  const torch::Tensor gains = model.exposure->Gains()[found - names.begin()];
+  return {gains[0].item<float>(), gains[1].item<float>(), gains[2].item<float>()};
+}
+
 std::vector<std::pair<std::string, torch::Tensor>> NamedParameters(const Model& model) {
   std::vector<std::pair<std::string, torch::Tensor>> named;
-  for (const auto& parameter : model.field->named_parameters()) {
-    named.emplace_back("field." + parameter.key(), parameter.value());
-  }
-  if (model.proposal) {
-    for (const auto& parameter : model.proposal->named_parameters()) {
-      named.emplace_back("proposal." + parameter.key(), parameter.value());
+  const auto add = [&](const std::string& prefix, const torch::nn::Module& module) {
+    for (const auto& parameter : module.named_parameters()) {
+      named.emplace_back(prefix + parameter.key(), parameter.value());
     }
-  }
+  };
+  add("field.", *model.field);
+  if (model.proposal) add("proposal.", *model.proposal);
+  if (model.background) add("background.", *model.background);
+  if (model.exposure) add("exposure.", *model.exposure);
   return named;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "nerf/config.h"
 #include "nerf/data/image.h"
@@ -10,7 +13,9 @@
 
 namespace nerf {
 
+class Background;
 class Engine;
+class Exposure;
 class OccupancyGrid;
 class ProposalField;
 class RadianceField;
@@ -21,7 +26,11 @@ struct SceneFacts {
   ColorEncoding encoding = ColorEncoding::kSrgb;
   bool has_alpha = false;
   sfm::SceneNormalization normalized_from_world;
+  std::vector<std::string> photographs = {};  // that it is trained on, by name
+  std::vector<double> exposure_stops = {};    // theirs, to begin with; empty: unknown. Not kept
 };
+
+SceneFacts FactsOf(const Dataset& data, const sfm::SceneNormalization& normalized_from_world);
 
 // A field with its occupancy grid, and the engine that evaluates them.
 struct Model {
@@ -30,6 +39,8 @@ struct Model {
   std::shared_ptr<RadianceField> field;
   std::shared_ptr<OccupancyGrid> grid;
   std::shared_ptr<ProposalField> proposal;  // where it and not the grid places the samples
+  std::shared_ptr<Background> background;   // where it is learned
+  std::shared_ptr<Exposure> exposure;       // where photographs differ in it
   std::shared_ptr<Engine> engine;
 };
 
@@ -38,6 +49,10 @@ kernels::Precision PrecisionOf(const Config& config);
 
 // A new model; its parameters start from config.train.seed.
 Model MakeModel(const Config& config, const SceneFacts& scene);
+
+// By what a photograph's exposure multiplies the field's colours. Throws sfm::InputError where the
+// model simulates no exposures or was not trained on a photograph of that name.
+std::array<float, 3> GainsOf(const Model& model, const std::string& photograph);
 
 // The model's part of a checkpoint, and back.
 void AddModel(const Model& model, Checkpoint& checkpoint);

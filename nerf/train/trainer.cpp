@@ -1,9 +1,13 @@
 #include "nerf/train/trainer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <span>
 
 #include "nerf/data/pixel_sampler.h"
+#include "nerf/effects/exposure_fit.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/field/tensor_span.h"
@@ -29,6 +33,23 @@ namespace {
 // What checkpoints call the state of the error map.
 constexpr char kErrorsName[] = "sampler.errors";
 
+// The exposures of photographs that are not trained on are fitted to them.
+void FitToPhotographs(std::span<float> rgb, const TargetBatch& truth, ColorEncoding encoding) {
+  std::map<std::int64_t, std::vector<std::size_t>> rays_of;
+  for (std::size_t r = 0; r < truth.photograph.size(); ++r) {
+    rays_of[truth.photograph[r]].push_back(r);
+  }
+  for (const auto& [photograph, rays] : rays_of) {
+    std::vector<float> rendered, shown;
+    for (const std::size_t r : rays) {
+      rendered.insert(rendered.end(), &rgb[3 * r], &rgb[3 * r] + 3);
+      shown.insert(shown.end(), &truth.rgb[3 * r], &truth.rgb[3 * r] + 3);
+    }
+    const std::array<float, 3> gains = FitGains(rendered, shown, encoding);
+    for (const std::size_t r : rays) ApplyGains(gains, rgb.subspan(3 * r, 3));
+  }
+}
+
 }  // namespace
 
 struct Trainer::State {
@@ -43,6 +64,7 @@ struct Trainer::State {
                                                 Options().max_rays_per_batch)) {
     TORCH_CHECK(Options().target_psnr == 0 || !data.validation.empty(),
                 "Trainer: a target PSNR needs validation photographs");
+    if (model.exposure) CheckPhotographs();
     if (!data.validation.empty()) {
       constexpr std::int64_t kValidationRays = 8192;
       validation = PixelSampler(data.validation).Sample(kValidationRays, Options().seed, 0);
@@ -52,6 +74,7 @@ struct Trainer::State {
 
   const TrainOptions& Options() const { return model.config.train; }
 
+  void CheckPhotographs() const;
   StepResult Step();
   StepResult Learn(StepSeconds& seconds);
   void AdaptBatch(std::int64_t shaded);
@@ -78,6 +101,16 @@ struct Trainer::State {
   double training_seconds = 0;
   double validation_psnr = 0;
 };
+
+// What is known of each photograph belongs to those that training began with, in their order.
+void Trainer::State::CheckPhotographs() const {
+  const std::vector<std::string>& names = model.scene.photographs;
+  if (std::ranges::equal(names, data.train, {}, {}, &View::name)) return;
+  throw sfm::InputError(
+      "{}: was trained on {} photographs, and now there are {}, or others; put back what it was "
+      "trained on, or train again",
+      run.string(), names.size(), data.train.size());
+}
 
 // A step with its book-keeping.
 StepResult Trainer::State::Step() {
@@ -134,7 +167,8 @@ void Trainer::State::AdaptBatch(std::int64_t shaded) {
 }
 
 double Trainer::State::Validate() {
-  const RenderOutput out = model.engine->Render(validation.rays);
+  RenderOutput out = model.engine->Render(validation.rays);
+  if (model.exposure) FitToPhotographs(out.rgb, validation, model.scene.encoding);
   double sum = 0;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {
     const double error =
@@ -214,6 +248,8 @@ Trainer::Trainer(const Checkpoint& checkpoint, const Dataset& data,
 Trainer::~Trainer() = default;
 
 const Model& Trainer::GetModel() const { return state_->model; }
+
+double Trainer::ValidationPsnr() { return state_->Validate(); }
 
 double Trainer::TrySteps(int steps) {
   State& s = *state_;

@@ -1,5 +1,6 @@
 #include "nerf/train/view_renderer.h"
 
+#include "nerf/effects/background.h"
 #include "nerf/render/packet_renderer.h"
 #include "nerf/render/render_quality.h"
 #include "nerf/train/engine.h"
@@ -10,8 +11,11 @@ std::shared_ptr<RayRenderer> ViewRenderer(const Model& model, double quality) {
   const Config& config = model.config;
   const RenderQuality of_dial = RenderQuality::Of(quality, config.march, config.proposal);
   if (quality == 1) return model.engine;
-  return std::make_shared<PacketRenderer>(model.field, model.grid, model.proposal, config.march,
-                                          config.proposal, of_dial, PrecisionOf(config));
+  const auto packets =
+      std::make_shared<PacketRenderer>(model.field, model.grid, model.proposal, config.march,
+                                       config.proposal, of_dial, PrecisionOf(config));
+  if (model.background) return std::make_shared<BackgroundRenderer>(packets, model.background);
+  return packets;
 }
 
 }  // namespace nerf

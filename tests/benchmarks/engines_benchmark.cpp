@@ -51,8 +51,16 @@ struct Scene {
   }
   template <class E>
   std::unique_ptr<Engine> Make(kernels::Precision precision) {
-    return std::make_unique<E>(EngineParts{field, grid, proposal, config.march, config.proposal,
-                                           config.loss, config.gradient_scaling, precision});
+    EngineParts parts;
+    parts.field = field;
+    parts.grid = grid;
+    parts.proposal = proposal;
+    parts.march = config.march;
+    parts.proposal_options = config.proposal;
+    parts.loss = config.loss;
+    parts.gradient_scaling = config.gradient_scaling;
+    parts.precision = precision;
+    return std::make_unique<E>(parts);
   }
   Config config;
   std::shared_ptr<RadianceField> field;

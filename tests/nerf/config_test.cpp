@@ -76,6 +76,30 @@ TEST(Config, AValueThatIsNoTextIsRefusedAsAnyOther) {
   EXPECT_THAT(ErrorOf("base", {"train.steps=\xe9\x01"}), HasSubstr("train.steps"));
 }
 
+TEST(Config, AnEffectIsOnWhereItsBlockIs) {
+  EXPECT_FALSE(LoadConfig("base", {}).effects.exposure);
+  EXPECT_TRUE(LoadConfig("base", {"effects.exposure={}"}).effects.exposure);
+  EXPECT_FALSE(
+      LoadConfig("base", {"effects.exposure={}", "effects.exposure=null"}).effects.exposure);
+  // What is written into a run folder comes back, on or off.
+  for (const char* effect : {"effects.exposure={}", "effects.exposure=null"}) {
+    const Config config = LoadConfig("base", {effect});
+    EXPECT_EQ(JsonFromConfig(ConfigFromJson(JsonFromConfig(config), "test")),
+              JsonFromConfig(config));
+  }
+}
+
+TEST(Config, AnEffectThatDoesNotExistIsNamedWithThoseThatDo) {
+  EXPECT_THAT(ErrorOf("base", {"effects.exposr={}"}),
+              AllOf(HasSubstr("effects.exposr"), HasSubstr("exposure")));
+  EXPECT_THAT(ErrorOf("base", {"effects.exposure=true"}),
+              HasSubstr("effects.exposure must be an object"));
+  EXPECT_THAT(ErrorOf("base", {"effects.exposure={\"stops\": 2}"}),
+              HasSubstr("effects.exposure.stops"));
+  // Nothing else may be missing.
+  EXPECT_THAT(ErrorOf("base", {"march=null"}), HasSubstr("march must be an object"));
+}
+
 TEST(Config, AnAssignmentWithoutAValueIsExplained) {
   EXPECT_THAT(ErrorOf("base", {"train.steps"}), HasSubstr("block.key=value"));
 }

@@ -4,20 +4,16 @@
 #include <cmath>
 
 namespace nerf::reference {
-namespace {
 
-// Mueller et al. 2022, equation 4, apart from the code that it checks.
-std::int64_t Entry(const kernels::HashGridLevel& level, std::uint32_t x, std::uint32_t y,
-                   std::uint32_t z) {
+std::uint32_t HashGridEntry(const kernels::HashGridLevel& level, std::uint32_t x, std::uint32_t y,
+                            std::uint32_t z) {
   const std::uint64_t side = level.resolution + 1;
   if (side * side * side <= level.size) {
-    return level.offset + static_cast<std::int64_t>(x + side * (y + side * z));
+    return static_cast<std::uint32_t>(x + side * (y + side * z));
   }
   const std::uint32_t hash = x ^ (y * 2654435761u) ^ (z * 805459861u);
-  return level.offset + hash % level.size;
+  return hash % level.size;
 }
-
-}  // namespace
 
 std::vector<double> HashEncode(const kernels::HashGridLayout& layout, std::span<const double> table,
                                const std::array<double, 3>& position) {
@@ -32,7 +28,8 @@ std::vector<double> HashEncode(const kernels::HashGridLayout& layout, std::span<
     }
     for (int feature = 0; feature < layout.features; ++feature) {
       const auto at = [&](int x, int y, int z) {
-        const std::int64_t entry = Entry(level, corner[0] + x, corner[1] + y, corner[2] + z);
+        const std::int64_t entry =
+            level.offset + HashGridEntry(level, corner[0] + x, corner[1] + y, corner[2] + z);
         return table[entry * layout.features + feature];
       };
       const auto along_x = [&](int y, int z) {

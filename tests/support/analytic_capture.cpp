@@ -30,7 +30,6 @@ std::vector<Eigen::Isometry3d> CameraRing(int count, double radius, double heigh
 AnalyticCapture::AnalyticCapture(const std::vector<Eigen::Isometry3d>& cameras, int width,
                                  int height, const SeenAlong& seen, bool has_alpha,
                                  int hold_out_every) {
-  scene.has_alpha = has_alpha;
   data.has_alpha = has_alpha;
   const sfm::Camera lens = PinholeFromFov(width, height, 0.7);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -48,6 +47,7 @@ AnalyticCapture::AnalyticCapture(const std::vector<Eigen::Isometry3d>& cameras, 
     const bool out = hold_out_every > 0 && i % hold_out_every == 0;
     (out ? held_out : data.train).push_back(std::move(view));
   }
+  scene = FactsOf(data, scene.normalized_from_world);
 }
 
 double PsnrOver(const Model& model, const std::vector<View>& views) {

@@ -28,6 +28,7 @@ SmallCapture MakeSmallCapture(int views, int width, int height) {
     }
     small.data.train.push_back(std::move(view));
   }
+  small.scene = FactsOf(small.data, small.scene.normalized_from_world);
   return small;
 }
 

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <optional>
 
 #include "nerf/data/camera.h"
 #include "nerf/data/image_io.h"
 #include "sfm/input_error.h"
+#include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
 namespace nerf {
@@ -70,11 +72,64 @@ class LoadedDataset : public testing::Test {
     }
   }
 
-  Dataset Load() { return LoadDataset(posed_, DataOptions(), {}); }
+  Dataset Load() { return LoadDataset(posed_, DataOptions(), masks_, {}); }
+
+  // A mask that leaves the upper half, for the photograph in the middle.
+  void MaskTheSecond(int width = 4, int height = 4) {
+    posed_.images[1].mask = folder_.path() / "mask.png";
+    Image mask(width, height, 3);
+    std::fill_n(mask.pixels.begin(), 3 * width * height / 2, 1.0f);
+    WriteImage(posed_.images[1].mask, mask);
+  }
 
   test::ScratchFolder folder_;
   sfm::PosedImages posed_;
+  std::optional<MaskOptions> masks_;
 };
+
+TEST_F(LoadedDataset, PixelsToIgnoreAreNotHeld) {
+  MaskTheSecond();
+  EXPECT_EQ(Load().train[1].Held(), 16);  // the effect is off
+  masks_ = MaskOptions{"ignore"};
+  const Dataset data = Load();
+  EXPECT_FALSE(data.has_alpha);
+  EXPECT_EQ(data.train[0].Held(), 16);
+  ASSERT_EQ(data.train[1].Held(), 8);
+  for (int k = 0; k < 8; ++k) EXPECT_EQ(data.train[1].PixelOf(k), k);
+  EXPECT_EQ(data.train[1].HeldNear(3), 3);
+  EXPECT_EQ(data.train[1].HeldNear(15), 7);
+}
+
+TEST_F(LoadedDataset, EmptyPixelsAreTransparent) {
+  MaskTheSecond();
+  masks_ = MaskOptions{"empty"};
+  const Dataset data = Load();
+  EXPECT_TRUE(data.has_alpha);
+  ASSERT_EQ(data.train[1].Held(), 16);
+  for (int k = 0; k < 16; ++k) {
+    EXPECT_EQ(static_cast<float>(data.train[1].rgba[4 * k + 3]), k < 8 ? 1.0f : 0.0f);
+  }
+}
+
+TEST_F(LoadedDataset, AMaskOfAnotherSizeIsRefusedWithBothSizes) {
+  MaskTheSecond(4, 2);
+  masks_ = MaskOptions{};
+  EXPECT_THAT(test::InputErrorOf([&] { Load(); }),
+              testing::AllOf(testing::HasSubstr("mask.png"), testing::HasSubstr("4x2"),
+                             testing::HasSubstr("4x4")));
+}
+
+TEST_F(LoadedDataset, AMaskThatIsNoImageIsNamed) {
+  MaskTheSecond();
+  std::ofstream(posed_.images[1].mask) << "none";
+  masks_ = MaskOptions{};
+  EXPECT_THAT(test::InputErrorOf([&] { Load(); }), testing::HasSubstr("mask.png"));
+}
+
+TEST_F(LoadedDataset, PhotographsThatAreTransparentEverywhereAreRefused) {
+  for (const auto& image : posed_.images) WriteImage(image.path, Image(4, 4, 4));
+  EXPECT_THAT(test::InputErrorOf([&] { Load(); }), testing::HasSubstr("transparent everywhere"));
+}
 
 TEST_F(LoadedDataset, HoldsThePixels) {
   const Dataset data = Load();
@@ -176,7 +231,7 @@ TEST(LoadDataset, AShareOfThePixelsIsThoseOfThePhotograph) {
   }
   DataOptions options;
   options.memory_mb = 1;  // of 3.05
-  const Dataset data = LoadDataset(posed, options, {});
+  const Dataset data = LoadDataset(posed, options, {}, {});
   std::int64_t held = 0;
   for (const View& view : data.train) {
     held += view.Held();

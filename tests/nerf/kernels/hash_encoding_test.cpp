@@ -8,6 +8,8 @@
 #include <set>
 #include <vector>
 
+#include "tests/reference/hash_encoding.h"
+
 namespace nerf::kernels {
 namespace {
 
@@ -59,7 +61,7 @@ TEST(HashGridLayout, DenseLevelsGiveEveryVertexItsOwnEntry) {
   std::set<std::uint32_t> entries;
   for (std::uint32_t x = 0; x <= 4; ++x) {
     for (std::uint32_t y = 0; y <= 4; ++y) {
-      for (std::uint32_t z = 0; z <= 4; ++z) entries.insert(HashGridIndex(level, x, y, z));
+      for (std::uint32_t z = 0; z <= 4; ++z) entries.insert(reference::HashGridEntry(level, x, y, z));
     }
   }
   EXPECT_EQ(entries.size(), 125u);
@@ -86,7 +88,7 @@ TEST(HashEncoding, AtAVertexOnlyItsEntryCounts) {
   // The last vertex too, which belongs to the cell before it.
   for (const auto& v : {std::array{0u, 0u, 0u}, {1u, 2u, 3u}, {4u, 4u, 4u}, {4u, 0u, 2u}}) {
     const auto encoded = Encode(layout, table, {v[0] / 4.0, v[1] / 4.0, v[2] / 4.0});
-    const auto entry = HashGridIndex(layout.levels[0], v[0], v[1], v[2]);
+    const auto entry = reference::HashGridEntry(layout.levels[0], v[0], v[1], v[2]);
     EXPECT_DOUBLE_EQ(encoded[0], table[2 * entry]);
     EXPECT_DOUBLE_EQ(encoded[1], table[2 * entry + 1]);
   }
@@ -111,7 +113,7 @@ TEST(HashEncoding, MatchesInterpolationAxisByAxis) {
       }
       for (int feature = 0; feature < 2; ++feature) {
         const auto at = [&](int x, int y, int z) {
-          const auto entry = HashGridIndex(level, c[0] + x, c[1] + y, c[2] + z);
+          const auto entry = reference::HashGridEntry(level, c[0] + x, c[1] + y, c[2] + z);
           return table[2 * (level.offset + entry) + feature];
         };
         const auto along_x = [&](int y, int z) {

@@ -19,6 +19,7 @@
 #include "tests/support/analytic_capture.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/small_capture.h"
+#include "tests/support/tiny_training.h"
 
 namespace nerf {
 namespace {
@@ -27,41 +28,12 @@ using Eigen::Vector3f;
 using Eigen::Vector4f;
 using test::AnalyticCapture;
 using test::CameraRing;
+using test::never_stop;
 using test::PsnrOver;
-
-const std::atomic<bool> never_stop = false;
-
-Config Settings(std::int64_t steps, const std::vector<std::string>& changes = {}) {
-  std::vector<std::string> assignments = {"encoding.log2_table_size=12",
-                                          "encoding.max_resolution=64",
-                                          "field.hidden_width=16",
-                                          "proposal.encoding.log2_table_size=11",
-                                          "proposal.anneal_steps=50",
-                                          "occupancy.resolution=32",
-                                          "occupancy.coarse_to_fine_steps=100",
-                                          "march.steps_per_unit=48",
-                                          "train.max_rays_per_batch=512",
-                                          "train.samples_per_batch=8192",
-                                          "train.checkpoint_every=1000",
-                                          "train.validate_every=1000",
-                                          "train.steps=" + std::to_string(steps)};
-  assignments.insert(assignments.end(), changes.begin(), changes.end());
-  return LoadConfig("base", assignments);
-}
+using test::Trained;
 
 // What a person says who knows that nothing stands before the cameras.
 constexpr char kNothingNear[] = "march.near_distance=0.8";
-
-// Trains; what a checkpoint then holds is finite, whatever the scene.
-Model Trained(const Config& config, const SceneFacts& scene, const Dataset& data) {
-  const test::ScratchFolder run;
-  Trainer trainer(config, scene, data, run.path());
-  EXPECT_TRUE(trainer.Run(never_stop).finished);
-  for (const auto& [name, tensor] : ReadRunCheckpoint(run.path()).tensors) {
-    EXPECT_TRUE(torch::isfinite(tensor).all().item<bool>()) << name;
-  }
-  return trainer.GetModel();
-}
 
 double HeldOutPsnr(const AnalyticCapture& capture, const Config& config) {
   return PsnrOver(Trained(config, capture.scene, capture.data), capture.held_out);
@@ -91,7 +63,7 @@ TEST(HardScene, ThinFogKeepsItsOpacity) {
     return Vector4f(1.0f, 0.6f, 0.2f, -std::expm1(-tau));
   };
   const AnalyticCapture capture(CameraRing(24, 1.5, 0.8), 24, 24, fog, /*has_alpha=*/true);
-  const Model model = Trained(Settings(1000), capture.scene, capture.data);
+  const Model model = Trained(test::TinyConfig(1000), capture.scene, capture.data);
   EXPECT_GT(PsnrOver(model, capture.held_out), 40);  // nothing at all would be 29 dB
 
   RayBatch through_the_middle;
@@ -111,7 +83,7 @@ TEST(HardScene, AMirrorIsSeenIfNotUnderstood) {
     return Sky(direction - 2 * direction.dot(normal) * normal).homogeneous();
   };
   const AnalyticCapture capture(CameraRing(96, 1.5, 0.8), 24, 24, mirror);
-  EXPECT_GT(HeldOutPsnr(capture, Settings(400, {kNothingNear})), 22);
+  EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(400, {kNothingNear})), 22);
 }
 
 TEST(HardScene, ABlackSceneStaysBlackAndAWhiteOneWhite) {
@@ -121,7 +93,7 @@ TEST(HardScene, ABlackSceneStaysBlackAndAWhiteOneWhite) {
         return Vector4f(value, value, value, 1.0f);
       };
       const AnalyticCapture capture(CameraRing(12, 1.5, 0.8), 16, 16, plain, has_alpha);
-      EXPECT_GT(HeldOutPsnr(capture, Settings(200)), 30) << value << " " << has_alpha;
+      EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(200)), 30) << value << " " << has_alpha;
     }
   }
 }
@@ -129,7 +101,7 @@ TEST(HardScene, ABlackSceneStaysBlackAndAWhiteOneWhite) {
 TEST(HardScene, NothingAtAllIsLearnedAsNothing) {
   const auto nothing = [](const Vector3f&, const Vector3f&) { return Vector4f(0, 0, 0, 0); };
   const AnalyticCapture capture(CameraRing(12, 1.5, 0.8), 16, 16, nothing, /*has_alpha=*/true);
-  EXPECT_GT(HeldOutPsnr(capture, Settings(200)), 40);
+  EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(200)), 40);
 }
 
 // A ball with stripes before a sky.
@@ -148,7 +120,7 @@ TEST(HardScene, OneOverexposedPhotographDoesNotSpoilTheOthers) {
       bright.rgba[i] = Eigen::half(std::min(1.0f, 8 * static_cast<float>(bright.rgba[i])));
     }
   }
-  EXPECT_GT(HeldOutPsnr(capture, Settings(400, {kNothingNear})), 22);
+  EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(400, {kNothingNear})), 22);
 }
 
 TEST(HardScene, CamerasInsideMatterSeeItsColour) {
@@ -160,26 +132,26 @@ TEST(HardScene, CamerasInsideMatterSeeItsColour) {
   auto cameras = CameraRing(64, 1.5, 0.8);
   for (int i = 0; i < 8; ++i) cameras[i].translation() *= 0.1;
   const AnalyticCapture capture(cameras, 24, 24, red_ball, /*has_alpha=*/true);
-  EXPECT_GT(HeldOutPsnr(capture, Settings(400)), 20);
+  EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(400)), 20);
 }
 
 TEST(HardScene, TwoPhotographsAreLearnedByHeart) {
   const AnalyticCapture capture(CameraRing(2, 1.5, 0.1), 32, 32, StripedBall, false, 0);
   ASSERT_EQ(capture.data.train.size(), 2u);
-  const Model model = Trained(Settings(400), capture.scene, capture.data);
+  const Model model = Trained(test::TinyConfig(400), capture.scene, capture.data);
   EXPECT_GT(PsnrOver(model, capture.data.train), 25);
 }
 
 TEST(HardScene, TenThousandPhotographsOfAFewPixels) {
   const AnalyticCapture capture(CameraRing(10000, 1.5, 0.8), 8, 8, StripedBall, false, 100);
   EXPECT_EQ(capture.data.train.size(), 9900u);
-  EXPECT_GT(HeldOutPsnr(capture, Settings(300)), 22);
+  EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(300)), 22);
 }
 
 TEST(HardScene, OnePhotographOfOnePixelTrains) {
   const AnalyticCapture capture(CameraRing(1, 1.5, 0.1), 1, 1, StripedBall, false, 0);
   const Model model =
-      Trained(Settings(50, {"train.max_rays_per_batch=1"}), capture.scene, capture.data);
+      Trained(test::TinyConfig(50, {"train.max_rays_per_batch=1"}), capture.scene, capture.data);
   EXPECT_GT(PsnrOver(model, capture.data.train), 20);
 }
 
@@ -197,7 +169,7 @@ TEST(HardScene, AMillimetreAndTenKilometresTrainAlike) {
       small.data.train[of_train++].normalized_from_camera =
           small.scene.normalized_from_world.NormalizedFromCamera(image.world_from_camera);
     }
-    const Model model = Trained(Settings(300), small.scene, small.data);
+    const Model model = Trained(test::TinyConfig(300), small.scene, small.data);
     return PsnrOver(model, small.data.train);
   };
   const double usual = psnr_at(1.0);
@@ -221,7 +193,7 @@ TEST(HardScene, AHundredThousandRecklessStepsEndWithAReasonAtWorst) {
   const OneThread one;
   for (const char* rate : {"optimizer.learning_rate=1", "optimizer.learning_rate=1e6"}) {
     const test::ScratchFolder run;
-    const Config config = Settings(
+    const Config config = test::TinyConfig(
         100000, {rate, "encoding.levels=2", "encoding.log2_table_size=8", "occupancy.resolution=8",
                  "train.max_rays_per_batch=2", "march.steps_per_unit=8", "march.far_distance=3",
                  "train.checkpoint_every=50"});
@@ -246,7 +218,7 @@ TEST(HardScene, AHundredThousandRecklessStepsEndWithAReasonAtWorst) {
 // A photograph that holds what is no number, past every reader that would have refused it.
 TEST(HardScene, AValueThatIsNoNumberNamesStepRayAndStageAndKeepsTheLastCheckpoint) {
   AnalyticCapture capture(CameraRing(8, 1.5, 0.8), 16, 16, StripedBall);
-  const Config config = Settings(400, {"train.checkpoint_every=1", "train.max_rays_per_batch=8"});
+  const Config config = test::TinyConfig(400, {"train.checkpoint_every=1", "train.max_rays_per_batch=8"});
   capture.data.train[1].rgba[4 * 70] = std::numeric_limits<Eigen::half>::quiet_NaN();
   const test::ScratchFolder run;
   Trainer trainer(config, capture.scene, capture.data, run.path());

@@ -57,9 +57,14 @@ struct Fixture {
       proposal = std::make_shared<ProposalField>(proposal_options, 6);
       proposal->to(dtype);
     }
-    engine =
-        std::make_shared<LibTorchEngine>(EngineParts{field, grid, proposal, march, proposal_options,
-                                                     LossOptions(), GradientScalingOptions{0.0}});
+    EngineParts parts;
+    parts.field = field;
+    parts.grid = grid;
+    parts.proposal = proposal;
+    parts.march = march;
+    parts.proposal_options = proposal_options;
+    parts.gradient_scaling.full_distance = 0;
+    engine = std::make_shared<LibTorchEngine>(parts);
     constexpr int kRays = 6;
     batch.rays.Resize(kRays);
     for (int r = 0; r < kRays; ++r) {

@@ -1,0 +1,105 @@
+#include "nerf/commands/effects_worth.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "nerf/commands/training_input.h"
+#include "nerf/config.h"
+#include "nerf/data/dataset.h"
+#include "nerf/train/effect_trial.h"
+#include "sfm/atomic_file.h"
+#include "sfm/input_error.h"
+#include "sfm/progress.h"
+#include "sfm/transforms_json.h"
+
+namespace nerf {
+namespace {
+
+struct Worth {
+  std::string effect;
+  TrialResult with, without;
+};
+
+// What the photographs are is not an effect that could be left away in a pair: pixels to ignore
+// would then be learned, and measured too.
+bool CanBeLeftAway(const std::string& effect) { return effect != "masks"; }
+
+// The photographs, with those held out to be measured on.
+sfm::PosedImages MeasuredOnHeldOut(const std::filesystem::path& poses) {
+  sfm::PosedImages posed = sfm::ReadTransformsJson(poses);
+  bool any = false;
+  for (sfm::PosedImage& image : posed.images) {
+    if (image.split == sfm::Split::kValidation) image.split = sfm::Split::kTrain;
+    if (image.split == sfm::Split::kTest) image.split = sfm::Split::kValidation;
+    any = any || image.split == sfm::Split::kValidation;
+  }
+  if (!any) {
+    throw sfm::InputError("{}: no photograph is held out to measure effects on; take 8 at least",
+                          poses.string());
+  }
+  return posed;
+}
+
+nlohmann::json JsonFrom(const std::vector<Worth>& all, int steps) {
+  nlohmann::json effects = nlohmann::json::array();
+  for (const Worth& w : all) {
+    effects.push_back({{"effect", w.effect},
+                       {"psnr_with", w.with.psnr},
+                       {"psnr_without", w.without.psnr},
+                       {"seconds_a_step_with", w.with.seconds_a_step},
+                       {"seconds_a_step_without", w.without.seconds_a_step},
+                       {"megabytes", w.with.megabytes - w.without.megabytes}});
+  }
+  return {{"steps", steps}, {"effects", effects}};
+}
+
+void PrintTable(const std::vector<Worth>& all, int steps) {
+  if (all.empty()) fmt::print("the run simulates no effect that could be left away\n");
+  if (all.empty()) return;
+  fmt::print("{:<11} {:>8} {:>9} {:>8} {:>16} {:>9}\n", "effect", "with dB", "without", "worth dB",
+             "time of a step", "memory MB");
+  for (const Worth& w : all) {
+    fmt::print("{:<11} {:>8.2f} {:>9.2f} {:>+8.2f} {:>+14.1f} % {:>+9.2f}\n", w.effect, w.with.psnr,
+               w.without.psnr, w.with.psnr - w.without.psnr,
+               100 * (w.with.seconds_a_step / w.without.seconds_a_step - 1),
+               w.with.megabytes - w.without.megabytes);
+  }
+  fmt::print("after {} steps, on the held-out photographs; more training may change it\n", steps);
+}
+
+}  // namespace
+
+void MeasureEffects(const OpenedRun& run, int steps, bool json,
+                    const std::filesystem::path& output) {
+  const Config& config = run.model.config;
+  const sfm::PosedImages posed = MeasuredOnHeldOut(run.posed.source);
+  const Dataset data = LoadOrWarn(posed, config, run.model.scene.normalized_from_world);
+  const SceneFacts scene = FactsOf(data, run.model.scene.normalized_from_world);
+  std::vector<std::string> effects;
+  for (const std::string& effect : EffectNames()) {
+    if (Simulates(config, effect) && CanBeLeftAway(effect)) effects.push_back(effect);
+  }
+  sfm::ProgressLine progress("measuring", 2 * static_cast<std::int64_t>(effects.size()));
+  std::vector<Worth> all;
+  for (const std::string& effect : effects) {
+    // With and without in turn, so that both see the same neighbours on the machine.
+    const TrialResult with = TryConfig(config, scene, data, steps);
+    progress.Update(2 * static_cast<std::int64_t>(all.size()) + 1, effect);
+    const TrialResult without = TryConfig(WithEffect(config, effect, "null"), scene, data, steps);
+    all.push_back({effect, with, without});
+    progress.Update(2 * static_cast<std::int64_t>(all.size()), effect);
+  }
+  progress.Finish();
+  const nlohmann::json result = JsonFrom(all, steps);
+  sfm::WriteFileAtomically(output / "effects_worth.json", result.dump(2) + "\n");
+  if (json) {
+    fmt::print("{}\n", result.dump(2));
+  } else {
+    PrintTable(all, steps);
+  }
+}
+
+}  // namespace nerf

@@ -1,0 +1,65 @@
+#include "nerf/data/mask.h"
+
+#include <algorithm>
+
+#include "nerf/data/image_io.h"
+#include "sfm/image_files.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+
+void MaskOptions::Check() const {
+  if (meaning == "ignore" || meaning == "empty") return;
+  throw sfm::InputError("config: effects.masks.meaning is {}; use ignore or empty", meaning);
+}
+
+Image ReadMask(const std::filesystem::path& path, int width, int height, bool upright_by_exif) {
+  const Image file = ReadImage(path, upright_by_exif);
+  if (file.width != width || file.height != height) {
+    throw sfm::InputError(
+        "{}: is {}x{} pixels, but its photograph is {}x{}; give a mask of that size", path.string(),
+        file.width, file.height, width, height);
+  }
+  Image mask(width, height, 1, ColorEncoding::kLinear);
+  for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
+    const float* const rgb = &file.pixels[i * file.channels];
+    mask.pixels[i] = std::max({rgb[0], rgb[1], rgb[2]}) > 0 ? 1.0f : 0.0f;
+  }
+  return mask;
+}
+
+void CheckMasks(const sfm::PosedImages& posed) {
+  for (const sfm::PosedImage& image : posed.images) {
+    if (image.mask.empty()) continue;
+    const auto mask = sfm::ReadImageSize(image.mask), photograph = sfm::ReadImageSize(image.path);
+    if (!mask) throw sfm::InputError("{}: cannot be read as an image", image.mask.string());
+    if (!photograph || (mask->width == photograph->width && mask->height == photograph->height)) {
+      continue;  // a photograph that cannot be read is left out later
+    }
+    throw sfm::InputError(
+        "{}: is {}x{} pixels, but its photograph is {}x{}; give a mask of that size",
+        image.mask.string(), mask->width, mask->height, photograph->width, photograph->height);
+  }
+}
+
+std::vector<std::uint32_t> WholePixels(const Image& mask, int factor) {
+  const Image left = Downscale(mask, factor);
+  std::vector<std::uint32_t> whole;
+  for (std::size_t i = 0; i < left.pixels.size(); ++i) {
+    // Not 1, for the mean of many ones may round.
+    if (left.pixels[i] > 0.9999f) whole.push_back(static_cast<std::uint32_t>(i));
+  }
+  return whole;
+}
+
+Image WithMask(const Image& photograph, const Image& mask) {
+  Image out(photograph.width, photograph.height, 4, photograph.encoding);
+  for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
+    const float* const from = &photograph.pixels[i * photograph.channels];
+    std::copy_n(from, 3, &out.pixels[4 * i]);
+    out.pixels[4 * i + 3] = mask.pixels[i] * (photograph.channels == 4 ? from[3] : 1.0f);
+  }
+  return out;
+}
+
+}  // namespace nerf

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "nerf/data/image.h"
+#include "sfm/posed_images.h"
+
+namespace nerf {
+
+// What black pixels of the photographs' masks mean: "ignore", what stands there is not of the scene
+// (a passer-by, the photographer's finger), or "empty", nothing stands there (a subject that was
+// cut out).
+struct MaskOptions {
+  std::string meaning = "ignore";
+
+  void Check() const;
+};
+
+// Which part of each pixel a mask leaves: 0 where it is black, 1 elsewhere.
+//   width, height  of the photograph, which the mask must have
+//   upright_by_exif  turn it as the photograph is turned
+// Throws sfm::InputError naming the file when it is missing, no image, or of another size.
+Image ReadMask(const std::filesystem::path& path, int width, int height, bool upright_by_exif);
+
+// Whether all masks have the size of their photographs: one that has not is a mistake of all, and
+// better told before an hour of training. Reads headers alone. Throws sfm::InputError.
+void CheckMasks(const sfm::PosedImages& posed);
+
+// The pixels of the downscaled photograph no part of which is masked out, y * width + x, rising.
+std::vector<std::uint32_t> WholePixels(const Image& mask, int factor);
+
+// The photograph with the mask as its alpha, or as a part of the alpha that it has.
+Image WithMask(const Image& photograph, const Image& mask);
+
+}  // namespace nerf

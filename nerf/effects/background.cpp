@@ -1,0 +1,66 @@
+#include "nerf/effects/background.h"
+
+#include <vector>
+
+#include "nerf/field/activations.h"
+#include "nerf/field/tensor_span.h"
+#include "nerf/parallel.h"
+
+namespace nerf {
+
+Background::Background(const BackgroundOptions& options, ColorEncoding encoding)
+    : rows_(options.resolution), encoding_(encoding) {
+  map_ = register_parameter("map", torch::zeros({2 * std::int64_t{rows_} * rows_, 3}));
+}
+
+torch::Tensor Background::forward(const torch::Tensor& directions) {
+  TORCH_CHECK(directions.dim() == 2 && directions.size(1) == 3,
+              "Background: directions must be [R,3], got ", directions.sizes());
+  const torch::Tensor plain = directions.to(torch::kFloat).contiguous();
+  const auto d = Span<const float>(plain);
+  const std::int64_t rays = directions.size(0);
+  std::vector<std::int64_t> index;
+  std::vector<float> weight;
+  for (std::int64_t r = 0; r < rays; ++r) {
+    const auto texels = BackgroundMap::TexelsOf(d.subspan(3 * r).first<3>(), rows_);
+    index.insert(index.end(), texels.index.begin(), texels.index.end());
+    weight.insert(weight.end(), texels.weight.begin(), texels.weight.end());
+  }
+  // Copied, for the way back asks for them when these vectors are gone.
+  const torch::Tensor corners =
+      map_.index_select(0, TensorOf(index, {4 * rays}, torch::kLong).clone()).view({rays, 4, 3});
+  const torch::Tensor raw =
+      (corners * TensorOf(weight, {rays, 4, 1}, map_.scalar_type()).clone()).sum(1);
+  return encoding_ == ColorEncoding::kSrgb ? torch::sigmoid(raw) : TruncatedExp(raw);
+}
+
+BackgroundMap Background::Map() const {
+  const torch::NoGradGuard no_grad;
+  const torch::Tensor raw = map_.detach().to(torch::kFloat).contiguous();
+  const auto values = Span<const float>(raw);
+  return {rows_, encoding_, {values.begin(), values.end()}};
+}
+
+void Background::AddGradient(std::span<const float> dL_draw) {
+  const torch::NoGradGuard no_grad;
+  const std::vector<float> values(dL_draw.begin(), dL_draw.end());
+  const torch::Tensor gradient = TensorOf(values, map_.sizes(), torch::kFloat).clone();
+  torch::Tensor& into = map_.mutable_grad();
+  into = into.defined() ? into + gradient : gradient;
+}
+
+RayBatch WithBackground(const RayBatch& rays, const BackgroundMap& map) {
+  RayBatch out = rays;
+  ParallelFor(rays.Size(), 256, [&](std::int64_t first, std::int64_t last) {
+    const std::size_t begin = 3 * first, size = 3 * (last - first);
+    map.Radiance(std::span(rays.direction).subspan(begin, size),
+                 std::span(out.background).subspan(begin, size));
+  });
+  return out;
+}
+
+RenderOutput BackgroundRenderer::Render(const RayBatch& rays) {
+  return inner_->Render(WithBackground(rays, background_->Map()));
+}
+
+}  // namespace nerf

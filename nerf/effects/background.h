@@ -1,0 +1,54 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "nerf/effects/background_map.h"
+#include "nerf/effects/effects_options.h"
+#include "nerf/render/ray_renderer.h"
+
+namespace nerf {
+
+// Surroundings without end, such as a sky: a learned colour for each direction, which a ray sees
+// where it meets nothing. Without it the field must put an opaque wall somewhere far off for each
+// ray. A map of the world by direction; see BackgroundMap for its form.
+class Background : public torch::nn::Module {
+ public:
+  // Starts grey: sRGB-encoded 0.5, linear 1.
+  Background(const BackgroundOptions& options, ColorEncoding encoding);
+
+  // directions [R,3] unit vectors -> [R,3]. Differentiable in the map.
+  torch::Tensor forward(const torch::Tensor& directions);
+
+  // As it is now.
+  BackgroundMap Map() const;
+
+  // Adds to the gradient of the map.
+  //   dL_draw  [rows, 2 rows, 3]
+  void AddGradient(std::span<const float> dL_draw);
+
+ private:
+  int rows_;
+  ColorEncoding encoding_;
+  torch::Tensor map_;  // [rows * 2 rows, 3]
+};
+
+// The rays with what the map shows in their directions as their background.
+RayBatch WithBackground(const RayBatch& rays, const BackgroundMap& map);
+
+// What another renderer shows, before that background.
+class BackgroundRenderer : public RayRenderer {
+ public:
+  BackgroundRenderer(std::shared_ptr<RayRenderer> inner, std::shared_ptr<Background> background)
+      : inner_(std::move(inner)), background_(std::move(background)) {}
+  RenderOutput Render(const RayBatch& rays) override;
+
+ private:
+  std::shared_ptr<RayRenderer> inner_;
+  std::shared_ptr<Background> background_;
+};
+
+}  // namespace nerf

@@ -1,0 +1,23 @@
+#include "nerf/effects/effects_options.h"
+
+#include "sfm/input_error.h"
+
+namespace nerf {
+
+void BackgroundOptions::Check() const {
+  if (resolution >= 2 && resolution <= 1024) return;
+  throw sfm::InputError("config: effects.background.resolution is {}; use 2 to 1024", resolution);
+}
+
+void RobustOptions::Check() const {
+  if (scale > 0) return;
+  throw sfm::InputError("config: effects.robust.scale is {}; use more than 0", scale);
+}
+
+void EffectsOptions::Check() const {
+  if (background) background->Check();
+  if (masks) masks->Check();
+  if (robust) robust->Check();
+}
+
+}  // namespace nerf

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+
+#include "nerf/data/mask.h"
+
+namespace nerf {
+
+// Photographs whose exposure or white balance differ (Exposure).
+struct ExposureOptions {};
+
+// Surroundings without end, behind everything, that differ in each direction (Background).
+struct BackgroundOptions {
+  int resolution = 32;  // rows of the map; it has twice as many columns
+
+  void Check() const;
+};
+
+// Light that a surface sends into one direction and not into another: gloss, mirrors. Without it
+// the colour network does not see the direction.
+struct ViewOptions {};
+
+// What stands in a photograph or two and in no other: passers-by, shadows that move. A ray's loss l
+// counts as l / (1 + l / scale), so that a large one, which nothing can make small, pulls little.
+// Source: Geman and McClure 1985.
+struct RobustOptions {
+  double scale = 0.05;  // the loss of a ray whose pull is a quarter of what it was
+
+  void Check() const;
+};
+
+// The effects that a scene may call for, in the order in which light meets them. A block that is
+// there is an effect that is simulated; one that is not there costs nothing.
+struct EffectsOptions {
+  std::optional<ViewOptions> view = ViewOptions();
+  std::optional<BackgroundOptions> background;
+  std::optional<ExposureOptions> exposure;
+  std::optional<MaskOptions> masks;
+  std::optional<RobustOptions> robust;
+
+  void Check() const;
+};
+
+}  // namespace nerf

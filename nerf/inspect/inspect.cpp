@@ -1,0 +1,195 @@
+#include "nerf/inspect/inspect.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "nerf/data/mask.h"
+#include "nerf/inspect/photograph_facts.h"
+#include "nerf/inspect/photograph_fit.h"
+#include "nerf/inspect/track_colors.h"
+#include "sfm/scene_normalization.h"
+
+namespace nerf {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kNearby = 30 * kDegree;  // between photographs that should see the same
+
+// Fewer points or photographs say too little.
+constexpr std::size_t kFewestPoints = 50, kFewestPhotographs = 4, kFewestViews = 5;
+
+// A normal distribution's standard deviation over its median absolute value.
+constexpr double kDeviation = 1.48;
+
+// From which on a scene calls for an effect.
+constexpr double kExposureStops = 0.1;   // standard deviation over the photographs
+constexpr double kViewDependent = 0.08;  // share of points
+constexpr double kFlat = 0.05;      // log light, by which places without any texture may change
+constexpr double kFarAway = 0.007;  // share of points beyond kFar
+constexpr double kFar = 8;          // radii of what the cameras look at
+constexpr double kPassing = 0.02;   // share of sightings that show something else
+constexpr double kSomethingElse = 0.35;  // log light, and four times what is usual
+constexpr double kSteps = 2.0 / 255;     // spread of one colour, as files round it
+
+double Luminance(const Eigen::Vector3f& log_light) { return static_cast<double>(log_light.mean()); }
+
+Verdict Fact(const std::string& effect, bool on, double figure, const std::string& evidence,
+             const std::string& setting = "{}") {
+  Verdict verdict;
+  verdict.effect = effect;
+  verdict.evidence = evidence;
+  verdict.figure = figure;
+  verdict.decided = true;
+  verdict.on = on;
+  verdict.setting = on ? setting : "null";
+  return verdict;
+}
+
+Verdict Measured(const std::string& effect, double figure, double threshold,
+                 const std::string& evidence) {
+  Verdict verdict = Fact(effect, figure >= threshold, figure, evidence);
+  verdict.threshold = threshold;
+  return verdict;
+}
+
+Verdict Undecided(const std::string& effect) {
+  Verdict verdict;
+  verdict.effect = effect;
+  verdict.evidence = "no sparse points to tell from";
+  return verdict;
+}
+
+Verdict NoBackground() { return Fact("background", false, 0, "photographs with alpha show none"); }
+
+void AddFacts(const PhotographFacts& facts, std::vector<Verdict>& verdicts) {
+  const bool alpha = facts.transparent > 0;
+  verdicts.push_back(
+      Fact("alpha", alpha, facts.transparent,
+           alpha ? fmt::format("{:.0f} % of the pixels are transparent", 100 * facts.transparent)
+                 : "no pixel is transparent"));
+  verdicts.push_back(
+      Fact("hdr", facts.linear, facts.beyond_white,
+           facts.linear ? fmt::format("linear radiance, {:.1f} % of the pixels brighter than 1",
+                                      100 * facts.beyond_white)
+                        : "display-referred files"));
+  // What was cut out is of one colour; what is to be ignored is a picture of something.
+  const bool cut_out = facts.masked_spread < kSteps;
+  verdicts.push_back(Fact(
+      "masks", facts.masks > 0, facts.masks,
+      facts.masks == 0 ? "no masks"
+                       : fmt::format("{} of {} photographs have one, {:.1f} % masked out, which {}",
+                                     facts.masks, facts.photographs, 100 * facts.masked_out,
+                                     cut_out ? "has one colour: empty" : "shows things: ignore"),
+      cut_out ? R"({"meaning": "empty"})" : R"({"meaning": "ignore"})"));
+}
+
+// Exposures, from the photographs' parts of the colours.
+Verdict JudgeExposure(const std::vector<double>& stops) {
+  double squares = 0, largest = 0;
+  for (const double s : stops) {
+    squares += s * s;
+    largest = std::max(largest, std::fabs(s));
+  }
+  const double spread = std::sqrt(squares / static_cast<double>(stops.size()));
+  return Measured("exposure", spread, kExposureStops,
+                  fmt::format("photographs differ by {:.2f} stops ({:.2f} at most) in the same "
+                              "points; {:.2f} call for it",
+                              spread, largest, kExposureStops));
+}
+
+// The share of points whose colour changes from view to view by more than an error of a pixel, or
+// another slant, could change it in their texture.
+Verdict JudgeView(const TrackColors& colors, const PhotographFit& fit) {
+  struct Spread {
+    std::vector<double> left_over, contrast;
+  };
+  std::map<int, Spread> of_point;
+  for (std::size_t i = 0; i < colors.seen.size(); ++i) {
+    Spread& spread = of_point[colors.seen[i].point];
+    spread.left_over.push_back(std::fabs(Luminance(fit.left_over[i])));
+    spread.contrast.push_back(static_cast<double>(colors.seen[i].contrast));
+  }
+  std::size_t judged = 0, changing = 0;
+  for (auto& [point, spread] : of_point) {
+    if (spread.left_over.size() < kFewestViews) continue;
+    ++judged;
+    const double change = kDeviation * Quantile(spread.left_over, 0.5);
+    if (change > kFlat + Quantile(spread.contrast, 0.5)) ++changing;
+  }
+  if (judged < kFewestPoints) {
+    Verdict verdict = Undecided("view");
+    verdict.evidence =
+        fmt::format("only {} points are seen {} times and more", judged, kFewestViews);
+    return verdict;
+  }
+  const double share = static_cast<double>(changing) / static_cast<double>(judged);
+  return Measured("view", share, kViewDependent,
+                  fmt::format("the colour of {:.1f} % of the points changes with the view by more "
+                              "than their texture explains; {:.0f} % call for it",
+                              100 * share, 100 * kViewDependent));
+}
+
+Verdict JudgePassers(const TrackColors& colors, const PhotographFit& fit) {
+  std::vector<double> usual;
+  for (const auto& left : fit.left_over) usual.push_back(std::fabs(Luminance(left)));
+  const double noise = kDeviation * Quantile(usual, 0.5);
+  const double limit = std::max(kSomethingElse, 4 * noise);
+  std::size_t other = 0;
+  for (const Sighting& s : colors.unseen) {
+    const Eigen::Vector3f left =
+        s.log_light - fit.of_point[s.point] - fit.of_photograph[s.photograph];
+    if (static_cast<double>(left.cwiseAbs().maxCoeff()) > limit) ++other;
+  }
+  const double share = static_cast<double>(other) /
+                       static_cast<double>(std::max<std::size_t>(1, colors.seen.size() + other));
+  return Measured("robust", share, kPassing,
+                  fmt::format("in {:.1f} % of the places where a point should be seen stands "
+                              "something else; {:.0f} % call for it",
+                              100 * share, 100 * kPassing));
+}
+
+Verdict JudgeBackground(const sfm::PosedImages& posed, bool alpha) {
+  if (alpha) return NoBackground();
+  const sfm::SceneNormalization normalized = sfm::NormalizeScene(posed);
+  std::size_t far = 0;
+  for (const sfm::SparsePoint& point : posed.points) {
+    if (normalized.NormalizedFromWorld(point.x_in_world).norm() > kFar) ++far;
+  }
+  const double share = static_cast<double>(far) / static_cast<double>(posed.points.size());
+  return Measured("background", share, kFarAway,
+                  fmt::format("{:.1f} % of the points are more than {:.0f} radii away; {:.1f} % "
+                              "call for it",
+                              100 * share, kFar, 100 * kFarAway));
+}
+
+}  // namespace
+
+Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read) {
+  CheckMasks(posed);
+  Inspection inspection;
+  const PhotographFacts facts = LookAtPhotographs(posed);
+  AddFacts(facts, inspection.verdicts);
+  if (posed.points.size() < kFewestPoints || posed.images.size() < kFewestPhotographs) {
+    for (const char* effect : {"view", "background", "exposure", "robust"}) {
+      const bool shows_none = facts.transparent > 0 && effect == std::string("background");
+      inspection.verdicts.push_back(shows_none ? NoBackground() : Undecided(effect));
+    }
+    return inspection;
+  }
+  const TrackColors colors = ReadTrackColors(posed, kNearby, read);
+  const PhotographFit fit = FitPhotographs(colors.seen, posed.points.size(), posed.images.size());
+  for (const auto& part : fit.of_photograph) {
+    inspection.stops.push_back(Luminance(part) / std::numbers::ln2);
+  }
+  inspection.verdicts.push_back(JudgeView(colors, fit));
+  inspection.verdicts.push_back(JudgeBackground(posed, facts.transparent > 0));
+  inspection.verdicts.push_back(JudgeExposure(inspection.stops));
+  inspection.verdicts.push_back(JudgePassers(colors, fit));
+  return inspection;
+}
+
+}  // namespace nerf

@@ -1,0 +1,176 @@
+#include "nerf/inspect/track_colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+
+#include "nerf/data/camera.h"
+#include "nerf/data/image_convert.h"
+#include "nerf/data/image_io.h"
+#include "nerf/data/mask.h"
+#include "nerf/parallel.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kReach = 2;            // pixels about the place, over which light is averaged
+constexpr float kDarkest = 0.004f;   // linear; below, the steps of 8 bits are steps of a tenth
+constexpr float kBrightest = 0.95f;  // of the end of the scale
+constexpr int kFewestNearby = 2;     // photographs that see a point which another should see
+
+struct Light {
+  Eigen::Vector3f log_light;
+  float contrast;
+};
+
+// Mean light about a place.
+std::optional<Light> LightAt(const Image& linear, bool has_end, const Vector2d& pixel) {
+  const int x = static_cast<int>(std::floor(pixel.x())),
+            y = static_cast<int>(std::floor(pixel.y()));
+  if (x < kReach || y < kReach || x + kReach >= linear.width || y + kReach >= linear.height) {
+    return std::nullopt;
+  }
+  constexpr float kCount = (2 * kReach + 1) * (2 * kReach + 1);
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float log_sum = 0, log_squares = 0;
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      const float* const at = linear.At(x + dx, y + dy);
+      if (linear.channels == 4 && at[3] < 1) return std::nullopt;
+      const Eigen::Map<const Eigen::Vector3f> light(at);
+      sum += light;
+      const float log_light = std::log(std::max(light.mean(), kDarkest));
+      log_sum += log_light;
+      log_squares += log_light * log_light;
+    }
+  }
+  const Eigen::Vector3f mean = sum / kCount;
+  if (mean.minCoeff() < kDarkest || (has_end && mean.maxCoeff() > kBrightest)) return std::nullopt;
+  const float variance = log_squares / kCount - (log_sum / kCount) * (log_sum / kCount);
+  return Light{mean.array().log().matrix(), std::sqrt(std::max(0.0f, variance))};
+}
+
+// In which parts of a photograph points are known.
+class KnownParts {
+ public:
+  explicit KnownParts(const sfm::Camera& camera)
+      : camera_(camera), known_(kCells * kCells, false) {}
+  void Add(const Vector2d& pixel) { known_[CellOf(pixel)] = true; }
+  // Whether no point is known about a place.
+  bool IsVoid(const Vector2d& pixel) const {
+    const int cell = CellOf(pixel), cx = cell % kCells, cy = cell / kCells;
+    for (int y = std::max(0, cy - 1); y <= std::min(kCells - 1, cy + 1); ++y) {
+      for (int x = std::max(0, cx - 1); x <= std::min(kCells - 1, cx + 1); ++x) {
+        if (known_[y * kCells + x]) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  static constexpr int kCells = 32;  // across and down
+  int CellOf(const Vector2d& pixel) const {
+    const auto of = [](double at, int size) {
+      return std::clamp(static_cast<int>(at / size * kCells), 0, kCells - 1);
+    };
+    return of(pixel.y(), camera_.height) * kCells + of(pixel.x(), camera_.width);
+  }
+  const sfm::Camera& camera_;
+  std::vector<bool> known_;
+};
+
+Vector3d CentreOf(const sfm::PosedImages& posed, int photograph) {
+  return posed.images[photograph].world_from_camera.translation();
+}
+
+// The places in a photograph where points should be seen that are not in its tracks.
+std::vector<std::pair<int, Vector2d>> Expected(const sfm::PosedImages& posed, int photograph,
+                                               double nearby) {
+  const sfm::PosedImage& image = posed.images[photograph];
+  const sfm::Camera& camera = posed.cameras[image.camera];
+  const Eigen::Isometry3d camera_from_world = image.world_from_camera.inverse();
+  KnownParts known(camera);
+  std::vector<std::pair<int, Vector2d>> candidates;
+  for (int p = 0; p < static_cast<int>(posed.points.size()); ++p) {
+    const sfm::SparsePoint& point = posed.points[p];
+    const auto in_track = std::ranges::find(point.track, photograph, &sfm::TrackElement::image);
+    if (in_track != point.track.end()) {
+      known.Add(in_track->pixel);
+      continue;
+    }
+    const auto pixel = PixelFromPoint(camera, camera_from_world * point.x_in_world);
+    if (!pixel || !(pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < camera.width &&
+                    pixel->y() < camera.height)) {
+      continue;
+    }
+    const auto near = std::ranges::count_if(point.track, [&](const sfm::TrackElement& seen) {
+      return AngleAt(posed, p, photograph, seen.image) < nearby;
+    });
+    if (near >= kFewestNearby) candidates.emplace_back(p, *pixel);
+  }
+  std::erase_if(candidates, [&](const auto& candidate) { return !known.IsVoid(candidate.second); });
+  return candidates;
+}
+
+}  // namespace
+
+double AngleAt(const sfm::PosedImages& posed, int point, int photograph_a, int photograph_b) {
+  const Vector3d& x = posed.points[point].x_in_world;
+  const Vector3d a = CentreOf(posed, photograph_a) - x, b = CentreOf(posed, photograph_b) - x;
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+TrackColors ReadTrackColors(const sfm::PosedImages& posed, double nearby,
+                            const std::function<void(int)>& read) {
+  const auto photographs = static_cast<int>(posed.images.size());
+  std::vector<std::vector<std::pair<int, Vector2d>>> tracks(photographs);
+  for (int p = 0; p < static_cast<int>(posed.points.size()); ++p) {
+    for (const sfm::TrackElement& seen : posed.points[p].track) {
+      tracks[seen.image].emplace_back(p, seen.pixel);
+    }
+  }
+  std::vector<TrackColors> of_photograph(photographs);
+  std::mutex counting;
+  int count = 0;
+  ParallelForEach(photographs, [&](std::int64_t i) {
+    const auto photograph = static_cast<int>(i);
+    const sfm::PosedImage& image = posed.images[photograph];
+    Image pixels;
+    try {
+      pixels = ReadImage(image.path, image.upright_by_exif);
+      if (!image.mask.empty()) {
+        // What is masked out says nothing, whatever the mask means.
+        pixels = WithMask(pixels,
+                          ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif));
+      }
+    } catch (const sfm::InputError&) {
+      return;  // training names it and leaves it out
+    }
+    const bool has_end = pixels.encoding == ColorEncoding::kSrgb;
+    const Image linear = ToLinear(pixels);
+    const auto look = [&](const auto& places, std::vector<Sighting>& into) {
+      for (const auto& [point, pixel] : places) {
+        if (const auto light = LightAt(linear, has_end, pixel)) {
+          into.push_back({point, photograph, light->log_light, light->contrast});
+        }
+      }
+    };
+    look(tracks[photograph], of_photograph[photograph].seen);
+    look(Expected(posed, photograph, nearby), of_photograph[photograph].unseen);
+    const std::lock_guard lock(counting);
+    if (read) read(++count);
+  });
+  TrackColors all;
+  for (const TrackColors& part : of_photograph) {
+    all.seen.insert(all.seen.end(), part.seen.begin(), part.seen.end());
+    all.unseen.insert(all.unseen.end(), part.unseen.begin(), part.unseen.end());
+  }
+  return all;
+}
+
+}  // namespace nerf

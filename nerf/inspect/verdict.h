@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace nerf {
+
+// Whether a scene calls for an effect, and what says so.
+struct Verdict {
+  std::string effect;    // its key in the configuration's effects; "alpha" and "hdr" have none
+  std::string evidence;  // what was measured, in words with its figure
+  double figure = 0;     // the same as a number, in the unit of the threshold
+  double threshold = 0;  // from which on the scene calls for it
+  bool decided = false;  // whether there is any evidence
+  bool on = false;
+
+  // From 0 at the threshold to 1 at twice or half of it. Facts are sure.
+  double Sure() const;
+
+  // What the configuration says for it: "{}", "null", or with options.
+  std::string setting = {};
+};
+
+// A table of verdicts, a line each.
+std::string TableOf(const std::vector<Verdict>& verdicts);
+
+}  // namespace nerf

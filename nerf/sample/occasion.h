@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nerf/sample/scene.h"
+#include "sfm/posed_images.h"
+
+namespace nerf::sample {
+
+// What a sample calls for, one effect each, so that a program which finds out can be told right
+// from wrong.
+enum class Occasion {
+  kBuiltIn,     // the built-in scene: mirrors, a sky, a ground to the horizon
+  kNothing,     // matt things on a slab, black around them: the simplest field is enough
+  kView,        // the same with coats that mirror
+  kBackground,  // a sky, and ground to the horizon
+  kExposure,    // exposure and white balance change from photograph to photograph
+  kMasks,       // people pass by, and masks say where
+  kAlpha,       // what is not of the subject is transparent
+  kRobust,      // people pass by
+  kHdr,         // radiance in EXR files, with much more light than white
+};
+
+// By the names that a person uses: "built-in", "nothing", "view", ...
+// Throws sfm::InputError listing the names where it is none of them.
+Occasion OccasionFromName(const std::string& name);
+std::string OccasionNames();
+
+Scene SceneOf(Occasion occasion);
+
+// How one photograph of a sample is taken.
+struct Photography {
+  Color gain = Color::Ones();       // of light, by exposure and white balance
+  bool linear = false;              // radiance as it is, else sRGB in [0,1]
+  bool alpha = false;               // 0 where a ray meets nothing
+  bool mask = false;                // black where somebody passes by
+  std::optional<Object> passer_by;  // who stands before the camera, and in no other photograph
+};
+
+// Every eighth photograph, from the first on, is one to judge by: nobody passes by there.
+//   view  index of the photograph; seed  of the sample
+Photography PhotographyOf(Occasion occasion, int view, unsigned seed,
+                          const Eigen::Isometry3d& world_from_camera);
+
+}  // namespace nerf::sample

@@ -1,0 +1,51 @@
+#include "nerf/train/effect_trial.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "nerf/stopwatch.h"
+#include "nerf/train/parameters.h"
+#include "nerf/train/trainer.h"
+
+namespace nerf {
+namespace {
+
+constexpr int kTimed = 10;  // steps at a time
+
+}  // namespace
+
+TrialResult TryConfig(Config config, const SceneFacts& scene, const Dataset& data, int steps) {
+  TORCH_CHECK(!data.validation.empty(), "TryConfig: no validation photographs");
+  config.train.steps = steps;
+  config.train.time_budget = 0;
+  config.train.target_psnr = 0;
+  const Stopwatch watch;
+  Trainer trainer(config, scene, data, {});
+  std::vector<double> seconds;
+  for (int done = 0; done < steps; done += kTimed) {
+    seconds.push_back(trainer.TrySteps(std::min(kTimed, steps - done)));
+  }
+  std::ranges::nth_element(seconds,
+                           seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2));
+  TrialResult result;
+  result.seconds_a_step = seconds[seconds.size() / 2];
+  result.psnr = trainer.ValidationPsnr();
+  for (const auto& [name, parameter] : NamedParameters(trainer.GetModel())) {
+    result.megabytes += 4.0 * static_cast<double>(parameter.nbytes()) * 0x1p-20;
+  }
+  result.seconds = watch.Seconds();
+  return result;
+}
+
+Config WithEffect(const Config& config, const std::string& effect, const std::string& setting) {
+  nlohmann::json json = JsonFromConfig(config);
+  json["effects"][effect] = nlohmann::json::parse(setting);
+  return ConfigFromJson(json, "effects." + effect);
+}
+
+bool Simulates(const Config& config, const std::string& effect) {
+  return !JsonFromConfig(config).at("effects").at(effect).is_null();
+}
+
+}  // namespace nerf

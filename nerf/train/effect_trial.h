@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "nerf/config.h"
+#include "nerf/data/dataset.h"
+#include "nerf/train/model.h"
+
+namespace nerf {
+
+// What a short training came to.
+struct TrialResult {
+  double psnr = 0;            // dB, on validation photographs
+  double seconds = 0;         // of the whole trial
+  double seconds_a_step = 0;  // the median, so that a neighbour on the machine counts little
+  double megabytes = 0;       // of parameters, with their gradients and Adam's moments
+};
+
+// Trains a new model for so many steps, with the learning rate at its last value in the end, and
+// keeps nothing. The same seed draws the same rays, so that two trials differ by their
+// configurations alone. Needs validation photographs.
+TrialResult TryConfig(Config config, const SceneFacts& scene, const Dataset& data, int steps);
+
+// The configuration with one effect on or off. setting: JSON of its block, "{}" or "null".
+Config WithEffect(const Config& config, const std::string& effect, const std::string& setting);
+
+// Whether the configuration simulates an effect.
+bool Simulates(const Config& config, const std::string& effect);
+
+}  // namespace nerf

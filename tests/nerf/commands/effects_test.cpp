@@ -1,0 +1,148 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "nerf/data/image_io.h"
+#include "sfm/atomic_file.h"
+#include "tests/nerf/commands/run_program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+using test::RunNerf;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+// Small captures that call for one effect each, and tiny runs on them.
+class EffectsCommands : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::ScratchFolder;
+    for (const char* occasion : {"exposure", "masks"}) {
+      const auto made = RunNerf(
+          fmt::format("sample {} --calls-for {} --views 17 --width 64 --height 48 --samples 2",
+                      Path(occasion), occasion));
+      ASSERT_EQ(made.exit_status, 0) << made.output;
+    }
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static std::string Path(const std::string& name) { return (folder_->path() / name).string(); }
+
+  static std::string Train(const std::string& capture, const std::string& run,
+                           const std::string& more) {
+    return fmt::format(
+        "train {}/truth/sparse -o {} --threads 2 --set train.steps=60 "
+        "--set train.samples_per_batch=2048 --set encoding.log2_table_size=12 "
+        "--set field.hidden_width=16 --set occupancy.resolution=32 {}",
+        Path(capture), Path(run), more);
+  }
+
+  static nlohmann::json Json(const std::string& file) {
+    return nlohmann::json::parse(sfm::ReadWholeFile(Path(file)));
+  }
+
+  // A refusal: one line, exit status 2, naming what is wrong.
+  static void ExpectRefused(const std::string& arguments,
+                            const testing::Matcher<std::string>& says) {
+    const auto result = RunNerf(arguments);
+    EXPECT_EQ(result.exit_status, 2) << result.output;
+    EXPECT_THAT(result.output, says);
+    EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
+  }
+
+  static test::ScratchFolder* folder_;
+};
+test::ScratchFolder* EffectsCommands::folder_ = nullptr;
+
+TEST_F(EffectsCommands, InspectPrintsAVerdictForEachEffectWithItsEvidence) {
+  const auto table = RunNerf("inspect " + Path("exposure/truth/sparse"));
+  EXPECT_EQ(table.exit_status, 0);
+  for (const char* effect : {"alpha", "hdr", "masks", "view", "background", "exposure", "robust"}) {
+    EXPECT_THAT(table.output, HasSubstr(effect));
+  }
+  EXPECT_THAT(table.output, HasSubstr("stops"));
+  const auto json = RunNerf("inspect --json " + Path("exposure/truth/sparse"));
+  const auto root = nlohmann::json::parse(json.output);
+  EXPECT_EQ(root.at("verdicts").size(), 7u);
+  EXPECT_EQ(root.at("exposure_stops").size(), 17u);
+}
+
+TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
+  const auto run = RunNerf(Train("exposure", "auto", ""));
+  ASSERT_EQ(run.exit_status, 0) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("what the capture calls for"));
+  EXPECT_FALSE(Json("auto/config.json").at("effects").at("exposure").is_null());
+  EXPECT_TRUE(Json("auto/config.json").at("effects").at("masks").is_null());
+  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 7u);
+
+  const auto eval = RunNerf("eval " + Path("auto"));
+  EXPECT_THAT(eval.output, HasSubstr("photograph's exposure, fitted"));
+  EXPECT_TRUE(Json("auto/eval/eval.json").at("exposure_fitted"));
+
+  // A picture as one of the photographs is exposed is another picture.
+  const auto at = [&](const std::string& name, const std::string& flags) {
+    const auto render =
+        RunNerf("render " + Path("auto") + " --image view_001.png -o " + Path(name) + " " + flags);
+    EXPECT_EQ(render.exit_status, 0) << render.output;
+    return ReadImage(Path(name + "/view_001.png"), false).pixels;
+  };
+  EXPECT_NE(at("mean", ""), at("as", "--exposure-of view_002.png"));
+  ExpectRefused("render " + Path("auto") + " --exposure-of nobody.png", HasSubstr("nobody.png"));
+}
+
+TEST_F(EffectsCommands, WhatAPersonSaysStands) {
+  const auto run = RunNerf(Train("exposure", "asked", "--effects -exposure,+robust"));
+  ASSERT_EQ(run.exit_status, 0) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("as asked for"));
+  const auto effects = Json("asked/config.json").at("effects");
+  EXPECT_TRUE(effects.at("exposure").is_null());
+  EXPECT_FALSE(effects.at("robust").is_null());
+  ExpectRefused("render " + Path("asked") + " --exposure-of view_001.png",
+                HasSubstr("simulates no exposures"));
+
+  const auto configured = RunNerf(Train("exposure", "configured", "--effects config"));
+  EXPECT_THAT(configured.output, Not(HasSubstr("what the capture calls for")));
+  EXPECT_TRUE(Json("configured/config.json").at("effects").at("exposure").is_null());
+
+  sfm::WriteFileAtomically(Path("mine.json"),
+                           R"({"parent": "base", "effects": {"exposure": null}})");
+  const auto pinned = RunNerf(Train("exposure", "pinned", "--config " + Path("mine.json")));
+  EXPECT_EQ(pinned.exit_status, 0) << pinned.output;
+  EXPECT_TRUE(Json("pinned/config.json").at("effects").at("exposure").is_null());
+}
+
+TEST_F(EffectsCommands, MasksAreFoundAndCountInTrainingAndMeasuring) {
+  const auto run = RunNerf(Train("masks", "masked", ""));
+  ASSERT_EQ(run.exit_status, 0) << run.output;
+  EXPECT_EQ(Json("masked/config.json").at("effects").at("masks").at("meaning"), "ignore");
+  EXPECT_THAT(sfm::ReadWholeFile(Path("masked/transforms.json")), HasSubstr("mask_path"));
+  EXPECT_EQ(RunNerf("eval " + Path("masked")).exit_status, 0);
+}
+
+TEST_F(EffectsCommands, RefuseWhatCannotBe) {
+  ExpectRefused(Train("exposure", "x", "--effects +rain"),
+                AllOf(HasSubstr("+rain"), HasSubstr("exposure")));
+  ExpectRefused(Train("exposure", "x", "--effects exposure"), HasSubstr("+exposure"));
+  ExpectRefused(Train("exposure", "x", "--set effects.rain={}"), HasSubstr("effects.rain"));
+  ExpectRefused("sample " + Path("y") + " --calls-for rain", HasSubstr("rain"));
+  EXPECT_FALSE(fs::exists(Path("x")));
+
+  const std::string masks = Path("masks/masks/view_003.png");
+  const std::string before = sfm::ReadWholeFile(masks);
+  WriteImage(masks, Image(8, 8, 3));
+  ExpectRefused("inspect " + Path("masks/truth/sparse"),
+                AllOf(HasSubstr("view_003.png"), HasSubstr("8x8"), HasSubstr("64x48")));
+  sfm::WriteFileAtomically(masks, before);
+}
+
+}  // namespace
+}  // namespace nerf

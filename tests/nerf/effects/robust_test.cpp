@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include "nerf/train/losses.h"
+#include "tests/support/central_differences.h"
+#include "tests/support/two_engines.h"
+
+namespace nerf {
+namespace {
+
+TEST(RobustLoss, IsTheOrdinaryLossWhereErrorsAreSmall) {
+  const torch::Tensor target = torch::full({4, 3}, 0.5), predicted = target + 1e-3;
+  const double plain = ColorLoss(predicted, target, {}, {}).item<double>();
+  const double robust = ColorLoss(predicted, target, {}, RobustOptions()).item<double>();
+  EXPECT_NEAR(robust / plain, 1, 1e-3);
+}
+
+TEST(RobustLoss, ALargeErrorPullsLessThanASmallOne) {
+  const auto pull = [](double error) {
+    const torch::Tensor target = torch::zeros({1, 3}, torch::kDouble);
+    const torch::Tensor predicted = torch::full({1, 3}, error, torch::kDouble).requires_grad_(true);
+    ColorLoss(predicted, target, {}, RobustOptions()).backward();
+    return predicted.grad()[0][0].item<double>();
+  };
+  EXPECT_LT(pull(0.8), 0.1 * pull(0.05));
+  EXPECT_GT(pull(0.8), 0);
+}
+
+TEST(RobustLoss, GradientsMatchCentralDifferences) {
+  const torch::Tensor target = torch::rand({6, 3}, torch::kDouble);
+  const torch::Tensor predicted =
+      torch::rand({6, 3}, torch::dtype(torch::kDouble)).requires_grad_(true);
+  for (const char* kind : {"huber", "mse"}) {
+    LossOptions loss;
+    loss.kind = kind;
+    test::ExpectGradientMatchesCentralDifferences(
+        [&] { return ColorLoss(predicted, target, loss, RobustOptions()); }, predicted, 1e-6, 1e-7);
+  }
+}
+
+TEST(RobustLoss, MeansTheSameInBothEngines) {
+  for (const char* kind : {"huber", "mse"}) {
+    test::TwoEngines e;
+    e.loss.kind = kind;
+    e.robust = RobustOptions();
+    e.Make(50);
+    e.ExpectTheSame();
+  }
+}
+
+}  // namespace
+}  // namespace nerf

@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "nerf/field/radiance_field.h"
+#include "nerf/train/parameters.h"
+#include "tests/support/analytic_capture.h"
+#include "tests/support/tiny_training.h"
+#include "tests/support/two_engines.h"
+
+namespace nerf {
+namespace {
+
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+
+TEST(ViewDependence, LeftAwayLeavesNoDependenceOnTheDirection) {
+  test::TwoEngines e;
+  e.color_model = ColorModel::kDiffuse;
+  e.Make(1);
+  const torch::NoGradGuard no_grad;
+  const torch::Tensor positions = torch::rand({8, 3});
+  const torch::Tensor ray = torch::zeros({8}, torch::kLong);
+  const auto radiance = [&](float x, float y, float z) {
+    return e.field->forward(positions, torch::tensor({{x, y, z}}), ray).radiance;
+  };
+  EXPECT_TRUE(radiance(1, 0, 0).equal(radiance(0, 0.6f, -0.8f)));
+}
+
+TEST(ViewDependence, LeftAwayCostsNoWeight) {
+  const auto weights = [](const char* effect) {
+    const Model model = MakeModel(LoadConfig("base", {effect}), SceneFacts());
+    std::int64_t count = 0;
+    for (const auto& [name, parameter] : NamedParameters(model)) count += parameter.numel();
+    return count;
+  };
+  EXPECT_EQ(weights("effects.view={}") - weights("effects.view=null"), 16 * 64);
+}
+
+TEST(ViewDependence, LeftAwayMeansTheSameInBothEngines) {
+  test::TwoEngines e;
+  e.color_model = ColorModel::kDiffuse;
+  e.Make(50);
+  e.ExpectTheSame();
+}
+
+// A ball that shows the light from which it is seen.
+TEST(ViewDependence, IsWorthADecibelAndMoreForAGlossyBall) {
+  const auto seen = [](const Vector3f& origin, const Vector3f& direction) -> Vector4f {
+    const float middle = -origin.dot(direction);
+    const Vector3f nearest = origin + middle * direction;
+    const float square = 0.36f - nearest.squaredNorm();
+    if (square <= 0) return Vector4f::Zero();
+    const Vector3f x = nearest - std::sqrt(square) * direction;
+    const Vector3f normal = x.normalized();
+    const Vector3f mirrored = direction - 2 * direction.dot(normal) * normal;
+    return (Vector3f::Constant(0.5f) + 0.45f * (2 * mirrored).array().sin().matrix()).homogeneous();
+  };
+  const test::AnalyticCapture capture(test::CameraRing(40, 1.5, 0.8), 24, 24, seen,
+                                      /*has_alpha=*/true);
+  const auto psnr = [&](const std::string& effect) {
+    const Config config = test::TinyConfig(800, {"effects.view=" + effect});
+    return test::PsnrOver(test::Trained(config, capture.scene, capture.data), capture.held_out);
+  };
+  EXPECT_GT(psnr("{}"), psnr("null") + 1);
+}
+
+}  // namespace
+}  // namespace nerf

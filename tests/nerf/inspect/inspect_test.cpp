@@ -1,0 +1,121 @@
+#include "nerf/inspect/inspect.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+#include "nerf/sample/sample_folder.h"
+#include "sfm/colmap_model.h"
+#include "sfm/masks.h"
+#include "sfm/transforms_json.h"
+#include "tests/support/scratch_folder.h"
+
+namespace nerf {
+namespace {
+
+using sample::Occasion;
+
+sample::SampleOptions Small(Occasion occasion) {
+  sample::SampleOptions options;
+  options.occasion = occasion;
+  options.views = 36;
+  options.width = 240;
+  options.height = 180;
+  options.samples_per_pixel = 4;
+  options.seed = 5;
+  return options;
+}
+
+struct Case {
+  Occasion occasion;
+  std::string name, calls_for;  // the effects, sorted
+};
+
+class EachOccasion : public testing::TestWithParam<Case> {};
+
+// Of the effects that Inspect judges, those that a sample calls for and no other.
+TEST_P(EachOccasion, IsJudgedRightly) {
+  const test::ScratchFolder folder;
+  sample::WriteSample(folder.path(), Small(GetParam().occasion));
+  sfm::PosedImages posed =
+      sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
+  sfm::FindMasks(posed);
+  const Inspection inspection = Inspect(posed);
+  SCOPED_TRACE(TableOf(inspection.verdicts));
+  std::set<std::string> on;
+  for (const Verdict& verdict : inspection.verdicts) {
+    EXPECT_TRUE(verdict.decided) << verdict.effect;
+    if (verdict.on) on.insert(verdict.effect);
+  }
+  std::string names;
+  for (const std::string& name : on) names += (names.empty() ? "" : ",") + name;
+  EXPECT_EQ(names, GetParam().calls_for);
+}
+
+std::string NameOf(const testing::TestParamInfo<Case>& of) { return of.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Inspect, EachOccasion,
+                         testing::Values(Case{Occasion::kNothing, "Nothing", ""},
+                                         Case{Occasion::kView, "View", "view"},
+                                         Case{Occasion::kBackground, "Background", "background"},
+                                         Case{Occasion::kExposure, "Exposure", "exposure"},
+                                         Case{Occasion::kMasks, "Masks", "masks"},
+                                         Case{Occasion::kAlpha, "Alpha", "alpha"},
+                                         Case{Occasion::kRobust, "Robust", "robust"},
+                                         Case{Occasion::kHdr, "Hdr", "hdr"}),
+                         NameOf);
+
+TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
+  const test::ScratchFolder folder;
+  const sample::SampleOptions options = Small(Occasion::kExposure);
+  sample::WriteSample(folder.path(), options);
+  const sfm::PosedImages posed =
+      sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
+  const Inspection inspection = Inspect(posed);
+  ASSERT_EQ(inspection.stops.size(), posed.images.size());
+  std::vector<double> truth;
+  double mean = 0;
+  for (int i = 0; i < static_cast<int>(posed.images.size()); ++i) {
+    const auto gain =
+        sample::PhotographyOf(options.occasion, i, options.seed, posed.images[i].world_from_camera)
+            .gain;
+    truth.push_back(gain.array().log().mean() / std::log(2.0));
+    mean += truth.back() / static_cast<double>(posed.images.size());
+  }
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_NEAR(inspection.stops[i], truth[i] - mean, 0.1) << posed.images[i].name;
+  }
+}
+
+TEST(Inspect, WithoutSparsePointsOnlyFactsAreDecided) {
+  const test::ScratchFolder folder;
+  sample::WriteSample(folder.path(), Small(Occasion::kAlpha));
+  const Inspection inspection =
+      Inspect(sfm::ReadTransformsJson(folder.path() / "truth" / "transforms.json"));
+  std::map<std::string, bool> decided;
+  for (const Verdict& verdict : inspection.verdicts) decided[verdict.effect] = verdict.decided;
+  EXPECT_TRUE(decided.at("alpha"));
+  EXPECT_FALSE(decided.at("view"));
+  EXPECT_FALSE(decided.at("exposure"));
+}
+
+TEST(Verdict, IsSureFarFromItsThreshold) {
+  Verdict verdict;
+  verdict.decided = true;
+  verdict.threshold = 0.1;
+  verdict.figure = 0.1;
+  EXPECT_EQ(verdict.Sure(), 0);
+  verdict.figure = 0.2;
+  EXPECT_EQ(verdict.Sure(), 1);
+  verdict.figure = 0.01;
+  EXPECT_EQ(verdict.Sure(), 1);
+  verdict.decided = false;
+  EXPECT_EQ(verdict.Sure(), 0);
+}
+
+}  // namespace
+}  // namespace nerf
