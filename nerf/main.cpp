@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
     nerf::AddSampleCommand(app);
     nerf::AddSelfcheckCommand(app);
     nerf::AddStudyCommand(app);
+    nerf::AddPhotometricStereoCommand(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::RuntimeError& e) {

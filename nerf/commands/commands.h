@@ -15,5 +15,6 @@ void AddRenderCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);
 void AddSelfcheckCommand(CLI::App& app);
 void AddStudyCommand(CLI::App& app);
+void AddPhotometricStereoCommand(CLI::App& app);
 
 }  // namespace nerf
