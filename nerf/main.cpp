@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
     nerf::AddSelfcheckCommand(app);
     nerf::AddStudyCommand(app);
     nerf::AddPhotometricStereoCommand(app);
+    nerf::AddRelightCommand(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::RuntimeError& e) {

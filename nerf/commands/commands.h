@@ -16,5 +16,6 @@ void AddEvalCommand(CLI::App& app);
 void AddSelfcheckCommand(CLI::App& app);
 void AddStudyCommand(CLI::App& app);
 void AddPhotometricStereoCommand(CLI::App& app);
+void AddRelightCommand(CLI::App& app);
 
 }  // namespace nerf

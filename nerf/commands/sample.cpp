@@ -6,6 +6,7 @@
 #include <string>
 
 #include "nerf/commands/commands.h"
+#include "nerf/commands/light_stage_flags.h"
 #include "nerf/sample/sample_folder.h"
 
 namespace nerf {
@@ -14,10 +15,16 @@ namespace {
 struct SampleArguments {
   std::string folder;
   sample::SampleOptions options;
+  LightStageFlags light_stage;
 };
 
 void RunSample(const SampleArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
+  if (arguments.light_stage.Given()) {
+    const sample::SampleOptions& options = arguments.options;
+    RunLightStage(folder, arguments.light_stage, options.width, options.height, options.threads);
+    return;
+  }
   sample::WriteSample(folder, arguments.options);
   fmt::print(
       "{} photographs are in {}; true poses, depth, normals and albedo, for tests only, in {}\n"
@@ -46,10 +53,12 @@ void AddSampleCommand(CLI::App& app) {
   command->add_option("--seed", options.seed, "another number moves the cameras a little")
       ->capture_default_str();
   command->add_option("--threads", options.threads, "0: all cores")->capture_default_str();
+  AddLightStageFlags(*command, arguments->light_stage);
   command->footer(
       "Examples:\n"
       "  nerf sample demo                          36 photographs in demo/images\n"
       "  nerf sample demo --views 60 --width 800 --height 600\n"
+      "  nerf sample stage --light-stage 256       one light at a time, for nerf relight\n"
       "  nerf train demo                           then train on them");
   command->callback([arguments] { RunSample(*arguments); });
 }

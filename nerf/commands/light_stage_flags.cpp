@@ -1,0 +1,42 @@
+#include "nerf/commands/light_stage_flags.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "nerf/commands/interrupt.h"
+#include "nerf/commands/threads.h"
+#include "nerf/stopwatch.h"
+
+namespace nerf {
+
+void AddLightStageFlags(CLI::App& command, LightStageFlags& flags) {
+  command.add_option("--light-stage", flags.options.lights,
+                     "instead: a subject on a table under so many lights, one at a time, for nerf "
+                     "relight");
+  command.add_option(
+      "--environment", flags.options.environment,
+      "with --light-stage: a map; the subject directly under it is truth/direct.exr");
+  command
+      .add_option("--paths", flags.options.paths,
+                  "with --environment: of light, in each quarter of a pixel of that picture")
+      ->capture_default_str();
+}
+
+void RunLightStage(const std::filesystem::path& folder, const LightStageFlags& flags, int width,
+                   int height, int threads) {
+  const Stopwatch watch;
+  UseThreads(threads);
+  const auto& stop = StopOnInterrupt();
+  appearance::LightStageOptions options = flags.options;
+  options.width = width;
+  options.height = height;
+  if (!appearance::WriteLightStage(folder, options, [&] { return !stop; })) {
+    fmt::print("stopped; {} holds no whole capture\n", folder.string());
+    throw CLI::RuntimeError(130);
+  }
+  fmt::print(
+      "{} images under one light each are in {}, {:.1f} s\n"
+      "next: nerf relight {} --environment MAP\n",
+      options.lights, folder.string(), watch.Seconds(), folder.string());
+}
+
+}  // namespace nerf
