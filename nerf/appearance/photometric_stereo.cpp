@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 
 constexpr double kCoplanar = 0.02;          // smallest over largest singular value
 constexpr double kLeastDeterminant = 1e-4;  // of a triple of unit directions
-constexpr int kRefits = 3;
+constexpr int kRefits = 8;
+constexpr double kReach = 2;  // of the biweight, in tolerances
 
 SurfaceEstimate EstimateFrom(const Vector3d& g) {
   SurfaceEstimate estimate;
@@ -34,9 +35,9 @@ struct NormalEquations {
   Vector3d Ltb = Vector3d::Zero();
   int count = 0;
 
-  void Add(const Vector3d& light, double b) {
-    LtL += light * light.transpose();
-    Ltb += b * light;
+  void Add(const Vector3d& light, double b, double weight = 1) {
+    LtL += weight * light * light.transpose();
+    Ltb += weight * b * light;
     ++count;
   }
   // Zero where the lights do not span space.
@@ -159,24 +160,26 @@ SurfaceEstimate PhotometricSolver::Robust(std::span<const double> observations) 
   }
   if (!(least < std::numeric_limits<double>::infinity())) return {};
 
-  double sum = 0;
-  int agreeing = 0;
-  for (int refit = 0; refit <= kRefits; ++refit) {
+  // From what that triple explains to all that agrees with it, without a hard edge between.
+  const double reach = kReach * tolerance;
+  for (int refit = 0; refit < kRefits; ++refit) {
     NormalEquations equations;
-    sum = 0;
-    agreeing = 0;
     for (const int i : known) {
-      const double r = residual(g, i);
-      if (std::abs(r) > tolerance) continue;
-      sum += r * r;
-      ++agreeing;
-      if (observations[i] > dark && lights_.row(i).dot(g) > 0) {
-        equations.Add(lights_.row(i), observations[i]);
-      }
+      const double r = residual(g, i) / reach;
+      if (std::abs(r) >= 1 || observations[i] <= dark || lights_.row(i).dot(g) <= 0) continue;
+      equations.Add(lights_.row(i), observations[i], (1 - r * r) * (1 - r * r));
     }
     const Vector3d refitted = equations.Solve();
-    if (refit == kRefits || refitted.isZero(0)) break;
+    if (refitted.isZero(0)) break;
     g = refitted;
+  }
+  double sum = 0;
+  int agreeing = 0;
+  for (const int i : known) {
+    const double r = residual(g, i);
+    if (std::abs(r) > tolerance) continue;
+    sum += r * r;
+    ++agreeing;
   }
   SurfaceEstimate estimate = EstimateFrom(g);
   estimate.robust = true;

@@ -14,7 +14,7 @@ enum class StereoMethod { kLeastSquares, kRobust, kAuto };
 struct StereoOptions {
   StereoMethod method = StereoMethod::kAuto;
   double dark = 0.002;      // observations below this share of a pixel's brightest lie in shadow
-  double tolerance = 0.05;  // of the robust method: residuals above this share of the brightest are
+  double tolerance = 0.08;  // of the robust method: residuals above this share of the brightest are
                             // shadows and highlights
   double largest_residual = 0.02;  // relative to the albedo: where least squares leaves more, or
                                    // a light leaves the pixel in shadow, `auto` is robust
@@ -36,9 +36,9 @@ struct SurfaceEstimate {
 // Sources: Woodham 1980, least squares over all lights, (L^T L) g = L^T b with g = albedo n;
 // robust: sample consensus with truncated squares (MSAC of Torr and Zisserman 2000): of the exact
 // solutions of all triples of lights that face the camera the one with the least sum of
-// min(r^2, tolerance^2), then least squares over the lit observations within the tolerance. A light
-// behind the surface explains darkness, so attached shadows agree with the model; cast shadows and
-// highlights are left out.
+// min(r^2, tolerance^2), then least squares over the lit observations weighted by the biweight of
+// Beaton and Tukey 1974, which is 0 from two tolerances on. A light behind the surface explains
+// darkness, so attached shadows agree with the model; cast shadows and highlights are left out.
 class PhotometricSolver {
  public:
   // Throws sfm::InputError where there are fewer than three lights, or they lie in a plane with the

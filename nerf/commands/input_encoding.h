@@ -1,23 +1,21 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <map>
 #include <string>
 
 #include "nerf/appearance/linear_image.h"
+#include "nerf/commands/choice_option.h"
 
 namespace nerf {
 
 // --encoding auto|srgb|linear: what the numbers of the given images mean.
 inline void AddInputEncodingOption(CLI::App& command, appearance::InputEncoding& encoding,
                                    const std::string& meaning) {
-  static const std::map<std::string, appearance::InputEncoding> encodings = {
-      {"auto", appearance::InputEncoding::kAuto},
-      {"srgb", appearance::InputEncoding::kSrgb},
-      {"linear", appearance::InputEncoding::kLinear}};
-  command.add_option("--encoding", encoding, meaning)
-      ->transform(CLI::CheckedTransformer(encodings))
-      ->default_str("auto");
+  using appearance::InputEncoding;
+  AddChoiceOption<InputEncoding>(command, "--encoding", encoding,
+                                 {{"auto", InputEncoding::kAuto},
+                                  {"srgb", InputEncoding::kSrgb},
+                                  {"linear", InputEncoding::kLinear}},
+                                 meaning);
 }
 
 }  // namespace nerf

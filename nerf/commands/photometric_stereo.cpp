@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 
 #include "nerf/appearance/photometric_folder.h"
 #include "nerf/appearance/photometric_maps.h"
+#include "nerf/commands/choice_option.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/input_encoding.h"
 #include "nerf/commands/threads.h"
@@ -26,11 +26,6 @@ struct StereoArguments {
   appearance::StereoOptions stereo;
   int threads = 0;
 };
-
-const std::map<std::string, StereoMethod> kMethods = {
-    {"auto", StereoMethod::kAuto},
-    {"least-squares", StereoMethod::kLeastSquares},
-    {"robust", StereoMethod::kRobust}};
 
 void RunPhotometricStereo(const StereoArguments& arguments) {
   const Stopwatch watch;
@@ -74,12 +69,13 @@ void AddPhotometricStereoCommand(CLI::App& app) {
   AddInputEncodingOption(*command, arguments->capture.encoding,
                          "of the images: srgb, linear, or auto: of 8 bits that in which least "
                          "squares explain them better; all else is linear");
-  command
-      ->add_option("--method", arguments->stereo.method,
-                   "least-squares, robust (against shadows and highlights), or auto: robust where "
-                   "least squares leaves more than --residual")
-      ->transform(CLI::CheckedTransformer(kMethods))
-      ->default_str("auto");
+  AddChoiceOption<StereoMethod>(
+      *command, "--method", arguments->stereo.method,
+      {{"auto", StereoMethod::kAuto},
+       {"least-squares", StereoMethod::kLeastSquares},
+       {"robust", StereoMethod::kRobust}},
+      "least-squares, robust (against shadows and highlights), or auto: robust where "
+      "least squares leaves more than --residual");
   command
       ->add_option(
           "--residual", arguments->stereo.largest_residual,
