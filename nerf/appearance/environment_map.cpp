@@ -37,7 +37,9 @@ struct Place {
 Place Find(const double* cumulative, int bins, double u) {
   const double target = u * cumulative[bins];
   const double* above = std::upper_bound(cumulative + 1, cumulative + bins, target);
-  const auto bin = static_cast<int>(above - cumulative) - 1;
+  auto bin = static_cast<int>(above - cumulative) - 1;
+  // u just below 1 can round to the end, where bins may be empty.
+  while (bin > 0 && cumulative[bin + 1] == cumulative[bin]) --bin;
   const double weight = cumulative[bin + 1] - cumulative[bin];
   return {bin, weight > 0 ? std::clamp((target - cumulative[bin]) / weight, 0.0, 1.0) : 0.5};
 }

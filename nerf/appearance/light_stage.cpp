@@ -8,6 +8,7 @@
 #include "nerf/appearance/directions.h"
 #include "nerf/appearance/lambert.h"
 #include "nerf/appearance/light_file.h"
+#include "nerf/appearance/merl.h"
 #include "nerf/data/camera.h"
 #include "nerf/data/image_io.h"
 #include "nerf/output/camera_path.h"
@@ -71,13 +72,16 @@ void LightStageOptions::Check() const {
   CheckRange("--paths", paths, 1, 1'000'000);
 }
 
-SurfaceScene LightStageSubject() {
+SurfaceScene LightStageSubject(std::shared_ptr<const Brdf> in_place_of_gold) {
+  if (!in_place_of_gold) {
+    in_place_of_gold = std::make_shared<Conductor>(Color(1.00, 0.77, 0.34), 0.25);
+  }
   SurfaceScene scene;
   scene.surfaces = {{sample::Box{{0, -0.05, 0}, {1.9, 0.05, 0.9}},
                      std::make_shared<Lambert>(Color(0.42, 0.36, 0.30))},
                     Ball(-1.12, std::make_shared<Lambert>(Color(0.30, 0.52, 0.42))),
                     Ball(-0.37, std::make_shared<CoatedDiffuse>(Color(0.55, 0.06, 0.05), 1.5, 0.2)),
-                    Ball(0.37, std::make_shared<Conductor>(Color(1.00, 0.77, 0.34), 0.25)),
+                    Ball(0.37, std::move(in_place_of_gold)),
                     MarbleBall(1.12)};
   return scene;
 }
@@ -130,6 +134,8 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   if (!options.environment.empty()) {
     environment = std::make_shared<EnvironmentMap>(EnvironmentMap::Read(options.environment));
   }
+  std::shared_ptr<const Brdf> measured;
+  if (!options.merl.empty()) measured = std::make_shared<MerlBrdf>(MerlBrdf::Read(options.merl));
   RefuseForeignImages(folder);
   sfm::MakeOutputFolder(folder);
   sfm::RemoveAll(folder / "lights.txt");
@@ -137,7 +143,7 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   for (const fs::path& file : sfm::ImageFilesIn(folder)) sfm::RemoveAll(file);
   const std::vector<DirectionalLight> lights = LightStageLights(options.lights);
   const StageCamera camera = LightStageCamera(options.width, options.height);
-  SurfaceScene subject = LightStageSubject();
+  SurfaceScene subject = LightStageSubject(measured);
   if (environment) {
     sfm::MakeOutputFolder(folder / "truth");
     const SceneRendering direct =

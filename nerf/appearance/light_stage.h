@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,16 @@ struct LightStageOptions {
   int height = 180;
   int paths = 256;               // a place, of the picture directly under an environment
   std::string environment = "";  // a map for that picture; empty: none is made
+  std::string merl = "";         // a measured BRDF for the ball of gold; empty: gold
 
   // Throws sfm::InputError, naming the flag, where a value is out of range.
   void Check() const;
 };
 
 // The built-in subject: four balls on a table, matt (Lambert), glazed (a rough coat on a red base),
-// of gold (a rough metal) and of marble (translucent), without any light.
-SurfaceScene LightStageSubject();
+// of gold (a rough metal, or what is given in its place) and of marble (translucent), without any
+// light.
+SurfaceScene LightStageSubject(std::shared_ptr<const Brdf> in_place_of_gold = nullptr);
 
 // A camera before it, at the height of a person who leans over the table. World: x right, y up, z
 // towards the camera.

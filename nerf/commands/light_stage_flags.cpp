@@ -15,6 +15,9 @@ void AddLightStageFlags(CLI::App& command, LightStageFlags& flags) {
   command.add_option(
       "--environment", flags.options.environment,
       "with --light-stage: a map; the subject directly under it is truth/direct.exr");
+  command.add_option("--merl", flags.options.merl,
+                     "with --light-stage: a measured BRDF in MERL's binary format, for the ball of "
+                     "gold");
   command
       .add_option("--paths", flags.options.paths,
                   "with --environment: of light, in each quarter of a pixel of that picture")

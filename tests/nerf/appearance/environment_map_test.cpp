@@ -107,6 +107,19 @@ TEST(EnvironmentMap, WithOneLitPixelIsDrawnFromThereOnly) {
   }
 }
 
+TEST(EnvironmentMap, IsNeverDrawnFromWhereItIsBlack) {
+  for (const int x : {0, 5, 31}) {
+    for (const int y : {0, 7, 15}) {
+      Image image = Black(16);
+      Light(image, x, y, Color::Constant(0.1));
+      const EnvironmentMap map(image, "one");
+      for (const double u : {0.0, 0.3, 1 - 0x1p-53}) {
+        for (const double v : {0.0, 0.7, 1 - 0x1p-53}) EXPECT_GT(map.Draw({u, v})->pdf, 0);
+      }
+    }
+  }
+}
+
 TEST(EnvironmentMap, ThatIsBlackGivesNoDirection) {
   const EnvironmentMap map(Black(8), "black");
   EXPECT_FALSE(map.Draw({0.5, 0.5}));

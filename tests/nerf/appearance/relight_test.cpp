@@ -8,8 +8,11 @@
 #include <iostream>
 #include <numbers>
 
+#include "nerf/appearance/lambert.h"
 #include "nerf/appearance/light_file.h"
 #include "nerf/appearance/light_stage.h"
+#include "nerf/appearance/merl.h"
+#include "nerf/appearance/microfacet.h"
 #include "nerf/data/image_io.h"
 #include "nerf/data/image_metrics.h"
 #include "tests/support/input_error_of.h"
@@ -172,6 +175,19 @@ TEST(LightStage, RelitIsWhatIsSeenDirectlyUnderTheEnvironment) {
   EXPECT_GT(many, few + 3);
 }
 
+TEST(LightStage, DressesTheThirdBallInAMeasuredBrdf) {
+  const StageCamera camera = LightStageCamera(48, 27);
+  const DirectionalLight light{Vector3d(0, 0.5, 1).normalized()};
+  SurfaceScene gold = LightStageSubject();
+  const Conductor analytic(Color(1.00, 0.77, 0.34), 0.25);
+  SurfaceScene measured =
+      LightStageSubject(std::make_shared<MerlBrdf>(MerlBrdf::Measure(analytic)));
+  SurfaceScene matt = LightStageSubject(std::make_shared<Lambert>(Color::Constant(0.5)));
+  const Image truth = PhotographUnder(gold, light, camera);
+  EXPECT_GT(Psnr(PhotographUnder(measured, light, camera), truth), 35);
+  EXPECT_LT(Psnr(PhotographUnder(matt, light, camera), truth), 30);
+}
+
 TEST(LightStage, WritesACaptureThatCanBeRelit) {
   const test::ScratchFolder scratch;
   WriteImage(scratch.path() / "map.exr", [] {
@@ -214,6 +230,9 @@ TEST(LightStage, RefusesOptionsOutOfRangeAndFoldersOfOthers) {
   options = {};
   options.environment = scratch.path() / "none.hdr";
   EXPECT_THAT(error(), HasSubstr("none.hdr"));
+  options = {};
+  options.merl = scratch.path() / "none.binary";
+  EXPECT_THAT(error(), HasSubstr("none.binary"));
   options = {};
   scratch.WriteImage("holiday.jpg", 8, 6);
   EXPECT_THAT(error(), AllOf(HasSubstr("holiday.jpg"), HasSubstr("choose an empty")));
