@@ -1,5 +1,7 @@
 #include "nerf/appearance/light_stage.h"
 
+#include <bit>
+#include <cstdint>
 #include <numbers>
 #include <regex>
 #include <utility>
@@ -26,6 +28,7 @@ using Eigen::Vector3d;
 constexpr double kRadius = 0.33;           // of a ball, scene units
 constexpr double kMillimetersAcross = 12;  // of the marble ball: small, so that light comes through
 constexpr int kPlaces = 4;                 // in a pixel
+constexpr int kPathsOfBounces = 16;        // in each place, under one light
 
 Surface Ball(double x, std::shared_ptr<const Brdf> brdf) {
   return {sample::Sphere{{x, kRadius, 0}, kRadius}, std::move(brdf)};
@@ -37,13 +40,6 @@ Surface MarbleBall(double x) {
   Surface ball{sphere, nullptr};
   ball.subsurface = std::make_shared<SubsurfaceSphere>(sphere, marble);
   return ball;
-}
-
-TransportTerms StageTerms() {
-  TransportTerms terms;
-  terms.emission = false;  // the dark behind the subject stays dark
-  terms.bounces = 0;
-  return terms;
 }
 
 std::string ImageName(int light) { return fmt::format("light_{:04d}.exr", light); }
@@ -70,6 +66,7 @@ void LightStageOptions::Check() const {
   CheckRange("--width", width, 1, 8192);
   CheckRange("--height", height, 1, 8192);
   CheckRange("--paths", paths, 1, 1'000'000);
+  terms.Check();
 }
 
 SurfaceScene LightStageSubject(std::shared_ptr<const Brdf> in_place_of_gold) {
@@ -104,27 +101,28 @@ std::vector<DirectionalLight> LightStageLights(int count) {
 }
 
 Image PhotographUnder(SurfaceScene& subject, const DirectionalLight& light,
-                      const StageCamera& camera) {
+                      const StageCamera& camera, const TransportTerms& terms) {
   subject.directional_lights = {light};
   subject.environment = nullptr;
   RenderSettings settings;
   settings.places = kPlaces;
-  settings.paths_per_place = 1;
-  return RenderScene(subject, StageTerms(), camera.camera, camera.world_from_camera, settings)
-      .color;
+  settings.paths_per_place = terms.bounces > 0 ? kPathsOfBounces : 1;
+  // Other random numbers under each light, so that the noise of bounces averages out.
+  settings.seed = Mix64(std::bit_cast<std::uint64_t>(light.to_light.y()));
+  return RenderScene(subject, terms, camera.camera, camera.world_from_camera, settings).color;
 }
 
 SceneRendering PhotographUnder(SurfaceScene& subject,
                                std::shared_ptr<const EnvironmentMap> environment,
-                               const StageCamera& camera, int paths,
+                               const StageCamera& camera, int paths, const TransportTerms& terms,
                                const std::function<bool()>& keep_on) {
   subject.directional_lights.clear();
   subject.environment = std::move(environment);
   RenderSettings settings;
   settings.places = kPlaces;
   settings.paths_per_place = paths;
-  return RenderScene(subject, StageTerms(), camera.camera, camera.world_from_camera, settings,
-                     "direct", keep_on);
+  return RenderScene(subject, terms, camera.camera, camera.world_from_camera, settings, "direct",
+                     keep_on);
 }
 
 bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
@@ -147,7 +145,7 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   if (environment) {
     sfm::MakeOutputFolder(folder / "truth");
     const SceneRendering direct =
-        PhotographUnder(subject, environment, camera, options.paths, keep_on);
+        PhotographUnder(subject, environment, camera, options.paths, options.terms, keep_on);
     if (!direct.finished) return false;
     WriteImage(folder / "truth" / "direct.exr", direct.color);
   }
@@ -155,8 +153,8 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   for (int i = 0; i < options.lights; ++i) {
     if (!keep_on()) return false;
     progress.Update(i, ImageName(i));
-    WriteImage(folder / ImageName(i),
-               PhotographUnder(subject, lights[static_cast<std::size_t>(i)], camera));
+    WriteImage(folder / ImageName(i), PhotographUnder(subject, lights[static_cast<std::size_t>(i)],
+                                                      camera, options.terms));
   }
   WriteLights(folder / "lights.txt", lights);
   return true;

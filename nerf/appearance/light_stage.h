@@ -19,6 +19,9 @@ struct LightStageOptions {
   std::string environment = "";  // a map for that picture; empty: none is made
   std::string merl = "";         // a measured BRDF for the ball of gold; empty: gold
 
+  // Of every picture alike. What lies behind the subject stays dark.
+  TransportTerms terms{.emission = false, .bounces = 0};
+
   // Throws sfm::InputError, naming the flag, where a value is out of range.
   void Check() const;
 };
@@ -39,14 +42,16 @@ StageCamera LightStageCamera(int width, int height);
 // `count` lights spread evenly over the sphere, each of intensity 1 (light_file.h).
 std::vector<DirectionalLight> LightStageLights(int count);
 
-// The subject under one light, and directly under an environment, both without what lies behind it:
-// one is the truth for what is relit from the other. Direct light, shadows, and what comes through
-// the marble; no bounces, so that an image under one light has no noise.
+// The subject under one light, and directly under an environment: one is the truth for what is
+// relit from the other, where both have the same terms. Without bounces an image under one light
+// has no noise.
+//   paths  in each of a pixel's places
 Image PhotographUnder(SurfaceScene& subject, const DirectionalLight& light,
-                      const StageCamera& camera);
+                      const StageCamera& camera,
+                      const TransportTerms& terms = LightStageOptions{}.terms);
 SceneRendering PhotographUnder(
     SurfaceScene& subject, std::shared_ptr<const EnvironmentMap> environment,
-    const StageCamera& camera, int paths,
+    const StageCamera& camera, int paths, const TransportTerms& terms = LightStageOptions{}.terms,
     const std::function<bool()>& keep_on = [] { return true; });
 
 // Writes a light-stage capture into a folder, which is made where it does not exist:

@@ -9,19 +9,31 @@
 namespace nerf {
 
 void AddLightStageFlags(CLI::App& command, LightStageFlags& flags) {
-  command.add_option("--light-stage", flags.options.lights,
-                     "instead: a subject on a table under so many lights, one at a time, for nerf "
-                     "relight");
-  command.add_option(
-      "--environment", flags.options.environment,
-      "with --light-stage: a map; the subject directly under it is truth/direct.exr");
-  command.add_option("--merl", flags.options.merl,
-                     "with --light-stage: a measured BRDF in MERL's binary format, for the ball of "
-                     "gold");
+  appearance::LightStageOptions& options = flags.options;
+  CLI::Option* stage = command.add_option(
+      "--light-stage", options.lights,
+      "instead: a subject on a table under so many lights, one at a time, for nerf relight");
   command
-      .add_option("--paths", flags.options.paths,
+      .add_option("--environment", options.environment,
+                  "with --light-stage: a map; the subject directly under it is truth/direct.exr")
+      ->needs(stage);
+  command
+      .add_option("--paths", options.paths,
                   "with --environment: of light, in each quarter of a pixel of that picture")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(stage);
+  command
+      .add_option(
+          "--merl", options.merl,
+          "with --light-stage: a measured BRDF in MERL's binary format, for the ball of gold")
+      ->needs(stage);
+  command
+      .add_option("--bounces", options.terms.bounces,
+                  "with --light-stage: further surfaces that light may visit; above 0 it is noisy")
+      ->capture_default_str()
+      ->needs(stage);
+  command.add_flag("!--no-shadows", options.terms.shadows, "with --light-stage: light all through")
+      ->needs(stage);
 }
 
 void RunLightStage(const std::filesystem::path& folder, const LightStageFlags& flags, int width,

@@ -188,6 +188,22 @@ TEST(LightStage, DressesTheThirdBallInAMeasuredBrdf) {
   EXPECT_LT(Psnr(PhotographUnder(matt, light, camera), truth), 30);
 }
 
+// Each term adds light, or takes it away: no light passes unseen from one to the next.
+TEST(LightStage, ShadowsTakeLightAndBouncesGiveSomeBack) {
+  const StageCamera camera = LightStageCamera(32, 18);
+  SurfaceScene subject = LightStageSubject();
+  const DirectionalLight light{Vector3d(0.6, 0.7, 0.4).normalized()};
+  const auto brightness = [&](bool shadows, int bounces) {
+    TransportTerms terms{.emission = false, .shadows = shadows, .bounces = bounces};
+    double sum = 0;
+    for (const float value : PhotographUnder(subject, light, camera, terms).pixels) sum += value;
+    return sum;
+  };
+  EXPECT_GT(brightness(false, 0), 1.05 * brightness(true, 0));
+  EXPECT_GT(brightness(true, 1), 1.01 * brightness(true, 0));
+  EXPECT_GT(brightness(true, 4), brightness(true, 1));
+}
+
 TEST(LightStage, WritesACaptureThatCanBeRelit) {
   const test::ScratchFolder scratch;
   WriteImage(scratch.path() / "map.exr", [] {
@@ -230,6 +246,9 @@ TEST(LightStage, RefusesOptionsOutOfRangeAndFoldersOfOthers) {
   options = {};
   options.environment = scratch.path() / "none.hdr";
   EXPECT_THAT(error(), HasSubstr("none.hdr"));
+  options = {};
+  options.terms.bounces = -1;
+  EXPECT_THAT(error(), HasSubstr("--bounces"));
   options = {};
   options.merl = scratch.path() / "none.binary";
   EXPECT_THAT(error(), HasSubstr("none.binary"));

@@ -25,6 +25,13 @@ TEST(RelightCommand, RelightsWhatSamplePhotographed) {
   EXPECT_TRUE(std::filesystem::exists(scratch.path() / "out/relit.exr"));
 }
 
+TEST(LightStageFlags, AloneAreRefused) {
+  const auto result = test::RunNerf("sample nowhere --environment map.hdr");
+  EXPECT_EQ(result.exit_status, 2);
+  EXPECT_THAT(result.output, HasSubstr("--light-stage"));
+  EXPECT_FALSE(std::filesystem::exists("nowhere"));
+}
+
 TEST(RelightCommand, RefusesWhatIsNoLight) {
   const test::ScratchFolder scratch;
   const std::string stage = (scratch.path() / "stage").string();
