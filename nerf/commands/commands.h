@@ -10,12 +10,12 @@ namespace nerf {
 // as its callback.
 void AddSampleCommand(CLI::App& app);
 void AddPosesCommand(CLI::App& app);
+void AddPhotometricStereoCommand(CLI::App& app);
+void AddRelightCommand(CLI::App& app);
 void AddTrainCommand(CLI::App& app);
 void AddRenderCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);
 void AddSelfcheckCommand(CLI::App& app);
 void AddStudyCommand(CLI::App& app);
-void AddPhotometricStereoCommand(CLI::App& app);
-void AddRelightCommand(CLI::App& app);
 
 }  // namespace nerf

@@ -13,18 +13,13 @@ namespace nerf {
 namespace {
 
 struct SampleArguments {
+  LightStageFlags light_stage;
   std::string folder;
   sample::SampleOptions options;
-  LightStageFlags light_stage;
 };
 
 void RunSample(const SampleArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
-  if (arguments.light_stage.Given()) {
-    const sample::SampleOptions& options = arguments.options;
-    RunLightStage(folder, arguments.light_stage, options.width, options.height, options.threads);
-    return;
-  }
   sample::WriteSample(folder, arguments.options);
   fmt::print(
       "{} photographs are in {}; true poses, depth, normals and albedo, for tests only, in {}\n"
@@ -56,11 +51,18 @@ void AddSampleCommand(CLI::App& app) {
   AddLightStageFlags(*command, arguments->light_stage);
   command->footer(
       "Examples:\n"
+      "  nerf sample stage --light-stage 256       one light at a time, for nerf relight\n"
       "  nerf sample demo                          36 photographs in demo/images\n"
       "  nerf sample demo --views 60 --width 800 --height 600\n"
-      "  nerf sample stage --light-stage 256       one light at a time, for nerf relight\n"
       "  nerf train demo                           then train on them");
-  command->callback([arguments] { RunSample(*arguments); });
+  command->callback([arguments] {
+    if (arguments->light_stage.Given()) {
+      RunLightStage(arguments->folder, arguments->light_stage, arguments->options.width,
+                    arguments->options.height, arguments->options.threads);
+    } else {
+      RunSample(*arguments);
+    }
+  });
 }
 
 }  // namespace nerf
