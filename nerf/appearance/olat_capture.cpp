@@ -90,6 +90,16 @@ Pictures FindPictures(const fs::path& folder) {
   return pictures;
 }
 
+// "vase/" and "." are folders with names too.
+fs::path WithItsName(const fs::path& folder) {
+  const auto without_slash = [](const fs::path& path) {
+    return path.has_filename() ? path : path.parent_path();
+  };
+  const fs::path path = without_slash(folder.lexically_normal());
+  const bool named = !path.empty() && path != "." && path.filename() != "..";
+  return named ? path : without_slash(fs::absolute(folder).lexically_normal());
+}
+
 // The folder itself, or its one sub-folder with images that is no chrome ball's.
 fs::path FolderOfImages(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
@@ -163,7 +173,7 @@ void FindLights(OlatCapture& capture, const fs::path& folder, const OlatOptions&
 }  // namespace
 
 OlatCapture FindOlatCapture(const fs::path& given, const OlatOptions& options) {
-  const fs::path folder = FolderOfImages(fs::path(given / "").lexically_normal().parent_path());
+  const fs::path folder = FolderOfImages(WithItsName(given));
   OlatCapture capture;
   capture.name = folder.filename().string();
   Pictures pictures = FindPictures(folder);
@@ -177,6 +187,13 @@ OlatCapture FindOlatCapture(const fs::path& given, const OlatOptions& options) {
   CheckSizes(capture);
   FindLights(capture, folder, options);
   return capture;
+}
+
+void RefuseAmongImages(const OlatCapture& capture, const fs::path& output) {
+  if (!fs::exists(output)) return;
+  if (!fs::equivalent(output, capture.images.front().parent_path())) return;
+  throw sfm::InputError("--output {}: holds the images of the capture; choose another folder",
+                        output.string());
 }
 
 std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, InputEncoding encoding) {

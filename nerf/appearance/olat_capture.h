@@ -37,6 +37,10 @@ struct OlatOptions {
 // lights as images.
 OlatCapture FindOlatCapture(const std::filesystem::path& folder, const OlatOptions& options);
 
+// Throws sfm::InputError where results would be written among a capture's images, and be taken for
+// more of them the next time.
+void RefuseAmongImages(const OlatCapture& capture, const std::filesystem::path& output);
+
 // The directions of the lights by the highlights on the capture's chrome ball.
 // Throws sfm::InputError naming the file.
 std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, InputEncoding encoding);

@@ -31,12 +31,13 @@ void RunPhotometricStereo(const StereoArguments& arguments) {
   const Stopwatch watch;
   UseThreads(arguments.threads);
   const auto capture = appearance::FindOlatCapture(arguments.folder, arguments.capture);
+  const std::filesystem::path folder =
+      arguments.output.empty() ? capture.name + "-normals" : arguments.output;
+  appearance::RefuseAmongImages(capture, folder);
   const InputEncoding encoding = arguments.capture.encoding == InputEncoding::kAuto
                                      ? appearance::EncodingByResidual(capture)
                                      : arguments.capture.encoding;
   const auto maps = appearance::SolvePhotometricStereo(capture, encoding, arguments.stereo);
-  const std::filesystem::path folder =
-      arguments.output.empty() ? capture.name + "-normals" : arguments.output;
   appearance::WritePhotometricFolder(folder, maps);
   const double share = 100.0 / std::max(1, maps.pixels);
   fmt::print(

@@ -85,6 +85,7 @@ void RunRelight(const RelightArguments& arguments) {
     weights.push_back(RelightWeights(capture, cells, map, arguments.rotate + 360.0 * f / frames));
   }
   const fs::path folder = arguments.output.empty() ? capture.name + "-relit" : arguments.output;
+  RefuseAmongImages(capture, folder);
   const fs::path frame_folder = folder / "frames";
   sfm::MakeOutputFolder(arguments.frames > 0 ? frame_folder : folder);
   // One exposure for the whole film: by its first frame.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <utility>
 
 #include "nerf/appearance/chrome_ball.h"
 #include "nerf/data/image_io.h"
@@ -113,6 +114,35 @@ TEST(OlatCapture, FindsLightsOnAChromeBallWhereNoFileTellsThem) {
   const OlatCapture capture = FindOlatCapture(scratch.path(), {});
   for (int i = 0; i < 3; ++i) {
     EXPECT_LT(test::DegreesBetween(capture.lights[i].to_light, directions[i]), 1.0);
+  }
+}
+
+TEST(OlatCapture, HasItsNameFromWithinToo) {
+  const test::ScratchFolder scratch;
+  for (const char* name : {"cup/1.png", "cup/2.png", "cup/3.png"}) scratch.WriteImage(name, 8, 6);
+  scratch.Write("cup/lights.txt", kThreeLights);
+  scratch.Write("cup/inner/notes.txt", "x");
+  const auto here = std::filesystem::current_path();
+  for (const auto& [from, given] : {std::pair("cup", "."), {"cup", "./"}, {"cup/inner", ".."}}) {
+    std::filesystem::current_path(scratch.path() / from);
+    const OlatCapture capture = FindOlatCapture(given, {});
+    std::filesystem::current_path(here);
+    EXPECT_EQ(capture.name, "cup") << given;
+  }
+}
+
+TEST(OlatCapture, IsNoPlaceForItsResults) {
+  const test::ScratchFolder scratch;
+  for (const char* name : {"a/1.png", "a/2.png", "a/3.png"}) scratch.WriteImage(name, 8, 6);
+  scratch.Write("a/lights.txt", kThreeLights);
+  const OlatCapture capture = FindOlatCapture(scratch.path() / "a", {});
+  for (const char* output : {"a", "a/", "a/../a"}) {
+    EXPECT_THAT(test::InputErrorOf([&] { RefuseAmongImages(capture, scratch.path() / output); }),
+                HasSubstr("--output"));
+  }
+  for (const char* output : {"b", "a/relit", "."}) {
+    EXPECT_EQ(test::InputErrorOf([&] { RefuseAmongImages(capture, scratch.path() / output); }),
+              "no error");
   }
 }
 
