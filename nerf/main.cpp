@@ -52,6 +52,8 @@ int main(int argc, char** argv) {
     nerf::AddInspectCommand(app);
     nerf::AddSelfcheckCommand(app);
     nerf::AddStudyCommand(app);
+    nerf::AddPhotometricStereoCommand(app);
+    nerf::AddRelightCommand(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::RuntimeError& e) {

@@ -10,6 +10,8 @@ namespace nerf {
 // as its callback.
 void AddSampleCommand(CLI::App& app);
 void AddPosesCommand(CLI::App& app);
+void AddPhotometricStereoCommand(CLI::App& app);
+void AddRelightCommand(CLI::App& app);
 void AddTrainCommand(CLI::App& app);
 void AddRenderCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);

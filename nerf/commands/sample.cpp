@@ -6,12 +6,14 @@
 #include <string>
 
 #include "nerf/commands/commands.h"
+#include "nerf/commands/light_stage_flags.h"
 #include "nerf/sample/sample_folder.h"
 
 namespace nerf {
 namespace {
 
 struct SampleArguments {
+  LightStageFlags light_stage;
   std::string folder;
   std::string calls_for = "built-in";
   sample::SampleOptions options;
@@ -52,13 +54,22 @@ void AddSampleCommand(CLI::App& app) {
   command->add_option("--seed", options.seed, "another number moves the cameras a little")
       ->capture_default_str();
   command->add_option("--threads", options.threads, "0: all cores")->capture_default_str();
+  AddLightStageFlags(*command, arguments->light_stage);
   command->footer(
       "Examples:\n"
+      "  nerf sample stage --light-stage 256       one light at a time, for nerf relight\n"
       "  nerf sample demo                          36 photographs in demo/images\n"
       "  nerf sample demo --views 60 --width 800 --height 600\n"
       "  nerf sample drift --calls-for exposure    exposure and white balance change\n"
       "  nerf train demo                           then train on them");
-  command->callback([arguments] { RunSample(*arguments); });
+  command->callback([arguments] {
+    if (arguments->light_stage.Given()) {
+      RunLightStage(arguments->folder, arguments->light_stage, arguments->options.width,
+                    arguments->options.height, arguments->options.threads);
+    } else {
+      RunSample(*arguments);
+    }
+  });
 }
 
 }  // namespace nerf

@@ -1,0 +1,143 @@
+#include "nerf/appearance/light_voronoi.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "nerf/parallel.h"
+#include "sfm/input_error.h"
+
+namespace nerf::appearance {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSameAngle = 1e-3;  // radians
+
+double Polar(const Vector3d& d) { return std::atan2(std::hypot(d.x(), d.z()), d.y()); }
+double Azimuth(const Vector3d& d) {
+  const double phi = std::atan2(d.x(), -d.z());
+  return phi < 0 ? phi + 2 * kPi : phi;
+}
+
+// Lights in rows of equal polar angle, spread evenly in azimuth and alike in each row.
+struct Grid {
+  std::vector<double> theta;             // of each row, ascending
+  std::vector<std::vector<int>> lights;  // [row][column], azimuth ascending from `phase`
+  double phase = 0;                      // azimuth of the first column
+};
+
+std::optional<Grid> FindGrid(std::span<const DirectionalLight> lights) {
+  std::map<double, std::vector<int>> rows;
+  for (int i = 0; i < std::ssize(lights); ++i) {
+    const double theta = Polar(lights[static_cast<std::size_t>(i)].to_light);
+    auto row = rows.lower_bound(theta - kSameAngle);
+    if (row == rows.end() || row->first > theta + kSameAngle) row = rows.insert({theta, {}}).first;
+    row->second.push_back(i);
+  }
+  Grid grid;
+  for (auto& [theta, row] : rows) {
+    const auto azimuth = [&](int i) {
+      return Azimuth(lights[static_cast<std::size_t>(i)].to_light);
+    };
+    std::ranges::sort(row, {}, azimuth);
+    const double step = 2 * kPi / static_cast<double>(row.size());
+    const double first = azimuth(row.front());
+    if (grid.theta.empty()) grid.phase = first;
+    if (row.size() < 3 || row.size() != rows.begin()->second.size()) return std::nullopt;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (std::abs(azimuth(row[c]) - grid.phase - step * static_cast<double>(c)) > kSameAngle) {
+        return std::nullopt;
+      }
+    }
+    grid.theta.push_back(theta);
+    grid.lights.push_back(row);
+  }
+  if (grid.theta.size() < 2) return std::nullopt;
+  // Rows at even distances with half a step to the poles, as pixels have: else there is no sin
+  // term.
+  const double step = kPi / static_cast<double>(grid.theta.size());
+  for (std::size_t r = 0; r < grid.theta.size(); ++r) {
+    if (std::abs(grid.theta[r] - step * (static_cast<double>(r) + 0.5)) > kSameAngle) {
+      return std::nullopt;
+    }
+  }
+  return grid;
+}
+
+int LightOnGrid(const Grid& grid, const Vector3d& d) {
+  const auto rows = static_cast<int>(grid.theta.size());
+  const int row = std::clamp(static_cast<int>(Polar(d) / kPi * rows), 0, rows - 1);
+  const auto& lights = grid.lights[static_cast<std::size_t>(row)];
+  const auto columns = static_cast<int>(lights.size());
+  const double place = (Azimuth(d) - grid.phase) / (2 * kPi) * columns;
+  const int column = (static_cast<int>(std::floor(place + 0.5)) % columns + columns) % columns;
+  return lights[static_cast<std::size_t>(column)];
+}
+
+}  // namespace
+
+LightVoronoi::LightVoronoi(std::span<const DirectionalLight> lights, int height)
+    : light_count_(static_cast<int>(lights.size())),
+      height_(height),
+      light_of_pixel_(static_cast<std::size_t>(height) * height * 2) {
+  if (lights.empty()) throw sfm::InputError("no lights to relight with; give one for each image");
+  // Directions of pixels only; the values are not looked at.
+  const EnvironmentMap pixels(Image(2 * height, height, 3, ColorEncoding::kLinear), "cells");
+  const std::optional<Grid> grid = FindGrid(lights);
+  on_a_grid_ = grid.has_value();
+  Eigen::Matrix<float, Eigen::Dynamic, 3> directions(light_count_, 3);
+  for (int i = 0; i < light_count_; ++i) {
+    directions.row(i) = lights[static_cast<std::size_t>(i)].to_light.cast<float>();
+  }
+  ParallelFor(height, 1, [&](std::int64_t begin, std::int64_t end) {
+    Eigen::VectorXf cosines(light_count_);
+    for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < 2 * height; ++x) {
+        const Vector3d d = pixels.Direction(x, y);
+        int& light = light_of_pixel_[static_cast<std::size_t>(y) * 2 * height + x];
+        if (grid) {
+          light = LightOnGrid(*grid, d);
+        } else {
+          cosines.noalias() = directions * d.cast<float>();
+          cosines.maxCoeff(&light);
+        }
+      }
+    }
+  });
+}
+
+std::vector<double> LightVoronoi::SolidAngles() const {
+  const EnvironmentMap one = EnvironmentMap(
+      [&] {
+        Image image(2 * height_, height_, 3, ColorEncoding::kLinear);
+        std::ranges::fill(image.pixels, 1.0f);
+        return image;
+      }(),
+      "cells");
+  std::vector<double> angles;
+  for (const Color& color : Integrate(one)) angles.push_back(color.x());
+  return angles;
+}
+
+std::vector<Color> LightVoronoi::Integrate(const EnvironmentMap& map, double degrees) const {
+  std::vector<Color> sums(static_cast<std::size_t>(light_count_), Color::Zero());
+  const int width = 2 * height_;
+  const int turn = static_cast<int>(std::lround(degrees / 360 * width)) % width;
+  for (int y = 0; y < height_; ++y) {
+    const double solid_angle = map.SolidAngle(y);
+    for (int x = 0; x < width; ++x) {
+      // What stands at x came from `turn` pixels further right: azimuth grows to the right, which
+      // seen from above is clockwise.
+      const int from = ((x + turn) % width + width) % width;
+      const int light = light_of_pixel_[static_cast<std::size_t>(y) * width + x];
+      sums[static_cast<std::size_t>(light)] += map.At(from, y) * solid_angle;
+    }
+  }
+  return sums;
+}
+
+}  // namespace nerf::appearance

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "nerf/appearance/linear_image.h"
+#include "nerf/commands/choice_option.h"
+
+namespace nerf {
+
+// --encoding auto|srgb|linear: what the numbers of the given images mean.
+inline void AddInputEncodingOption(CLI::App& command, appearance::InputEncoding& encoding,
+                                   const std::string& meaning) {
+  using appearance::InputEncoding;
+  AddChoiceOption<InputEncoding>(command, "--encoding", encoding,
+                                 {{"auto", InputEncoding::kAuto},
+                                  {"srgb", InputEncoding::kSrgb},
+                                  {"linear", InputEncoding::kLinear}},
+                                 meaning);
+}
+
+}  // namespace nerf

@@ -1,0 +1,107 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "nerf/appearance/photometric_folder.h"
+#include "nerf/appearance/photometric_maps.h"
+#include "nerf/commands/choice_option.h"
+#include "nerf/commands/commands.h"
+#include "nerf/commands/input_encoding.h"
+#include "nerf/commands/threads.h"
+#include "nerf/stopwatch.h"
+
+namespace nerf {
+namespace {
+
+using appearance::InputEncoding;
+using appearance::StereoMethod;
+
+struct StereoArguments {
+  std::string folder;
+  std::string output;
+  appearance::OlatOptions capture;
+  appearance::StereoOptions stereo;
+  int threads = 0;
+};
+
+void RunPhotometricStereo(const StereoArguments& arguments) {
+  const Stopwatch watch;
+  UseThreads(arguments.threads);
+  const auto capture = appearance::FindOlatCapture(arguments.folder, arguments.capture);
+  const std::filesystem::path folder =
+      arguments.output.empty() ? capture.name + "-normals" : arguments.output;
+  appearance::RefuseAmongImages(capture, folder);
+  const InputEncoding encoding = arguments.capture.encoding == InputEncoding::kAuto
+                                     ? appearance::EncodingByResidual(capture)
+                                     : arguments.capture.encoding;
+  const auto maps = appearance::SolvePhotometricStereo(capture, encoding, arguments.stereo);
+  appearance::WritePhotometricFolder(folder, maps);
+  const double share = 100.0 / std::max(1, maps.pixels);
+  fmt::print(
+      "{}: {} images, taken as {}, lights from {}\n"
+      "{} pixels: {:.1f} % by least squares, {:.1f} % robust, {:.1f} % too dark to say\n"
+      "residual {:.2f} % of the albedo in the median; {:.1f} s\n"
+      "normals, albedo, residual, depth.ply and relit.png are in {}\n",
+      capture.name, capture.images.size(), encoding == InputEncoding::kSrgb ? "sRGB" : "linear",
+      capture.lights_from, maps.pixels,
+      share * (maps.pixels - maps.robust_pixels - maps.unknown_pixels), share * maps.robust_pixels,
+      share * maps.unknown_pixels, 100 * maps.median_residual, watch.Seconds(), folder.string());
+}
+
+}  // namespace
+
+void AddPhotometricStereoCommand(CLI::App& app) {
+  auto arguments = std::make_shared<StereoArguments>();
+  CLI::App* command = app.add_subcommand(
+      "photometric-stereo", "Normals and albedo from photographs under one light at a time");
+  command
+      ->add_option("folder", arguments->folder,
+                   "images of one camera, one a light; with lights.txt or a folder chrome")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "folder of the results; NAME-normals");
+  command
+      ->add_option("--lights", arguments->capture.lights,
+                   "a file with a direction a line; chrome: by the ball's highlights; auto: "
+                   "lights.txt, else the ball")
+      ->capture_default_str();
+  AddInputEncodingOption(*command, arguments->capture.encoding,
+                         "of the images: srgb, linear, or auto: of 8 bits that in which least "
+                         "squares explain them better; all else is linear");
+  AddChoiceOption<StereoMethod>(
+      *command, "--method", arguments->stereo.method,
+      {{"auto", StereoMethod::kAuto},
+       {"least-squares", StereoMethod::kLeastSquares},
+       {"robust", StereoMethod::kRobust}},
+      "least-squares, robust (against shadows and highlights), or auto: robust where "
+      "least squares leaves more than --residual");
+  command
+      ->add_option(
+          "--residual", arguments->stereo.largest_residual,
+          "of least squares, relative to the albedo, beyond which auto is robust (as it is "
+          "where a light leaves a pixel in shadow)")
+      ->capture_default_str();
+  command
+      ->add_option("--tolerance", arguments->stereo.tolerance,
+                   "of the robust method: share of a pixel's brightest observation beyond which a "
+                   "residual is a shadow or a highlight")
+      ->capture_default_str();
+  command
+      ->add_option("--dark", arguments->stereo.dark,
+                   "share of a pixel's brightest observation below which it lies in shadow")
+      ->capture_default_str();
+  command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
+  command->footer(
+      "lights.txt: a line an image, \"x y z\", \"x y z intensity\" or \"x y z r g b\"; x right, y "
+      "up,\n"
+      "z towards the camera. An image with \"mask\" in its name marks the subject in white.\n"
+      "Examples:\n"
+      "  nerf photometric-stereo photometric/cat\n"
+      "  nerf photometric-stereo photometric/cat --lights chrome -o out/cat\n"
+      "  nerf photometric-stereo vase --method robust --encoding linear");
+  command->callback([arguments] { RunPhotometricStereo(*arguments); });
+}
+
+}  // namespace nerf

@@ -1,0 +1,167 @@
+#include "nerf/appearance/relight.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "nerf/appearance/light_name.h"
+#include "nerf/commands/commands.h"
+#include "nerf/commands/input_encoding.h"
+#include "nerf/commands/interrupt.h"
+#include "nerf/commands/threads.h"
+#include "nerf/data/image_io.h"
+#include "nerf/data/image_metrics.h"
+#include "nerf/output/video.h"
+#include "nerf/stopwatch.h"
+#include "sfm/atomic_file.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace appearance;
+
+constexpr double kFramesPerSecond = 24;
+
+struct RelightArguments {
+  std::string capture;
+  std::string output;
+  std::string environment;
+  OlatOptions olat;
+  double rotate = 0;  // degrees
+  int frames = 0;
+  std::optional<double> exposure;  // stops
+  std::string truth;
+  int memory_mb = 1024;
+  int threads = 0;
+
+  void Check() const {
+    if (frames < 0 || frames > 10'000) {
+      throw sfm::InputError("--frames is {}: choose a number from 1 to 10000", frames);
+    }
+    if (memory_mb < 1) throw sfm::InputError("--memory-mb is {}: choose 1 or more", memory_mb);
+    if (frames > 0 && !FfmpegIsInstalled()) {
+      throw sfm::InputError("--frames needs the ffmpeg program: install it");
+    }
+  }
+};
+
+// A map's file, or a light's name: the same from all sides.
+EnvironmentMap OpenEnvironment(const std::string& name) {
+  if (!fs::exists(name)) {
+    if (const auto color = ColorOfLight(name)) return EnvironmentMap::Uniform(*color);
+    throw sfm::InputError("--environment {}: neither a file nor a light's name; names are {}", name,
+                          kLightNames);
+  }
+  return EnvironmentMap::Read(name);
+}
+
+// Both as 8-bit pictures at the same exposure.
+double PsnrAgainst(const fs::path& truth, const Image& relit, double stops) {
+  const Image direct = ReadLinearImage(truth, InputEncoding::kAuto);
+  if (direct.width != relit.width || direct.height != relit.height) {
+    throw sfm::InputError("--truth {}: is {} x {} pixels, the capture's are {} x {}",
+                          truth.string(), direct.width, direct.height, relit.width, relit.height);
+  }
+  return Psnr(Exposed(direct, stops), Exposed(relit, stops));
+}
+
+void RunRelight(const RelightArguments& arguments) {
+  const Stopwatch watch;
+  arguments.Check();
+  UseThreads(arguments.threads);
+  const auto& stop = StopOnInterrupt();
+  const OlatCapture capture = FindOlatCapture(arguments.capture, arguments.olat);
+  const EnvironmentMap map = OpenEnvironment(arguments.environment);
+  const LightVoronoi cells(capture.lights, map.height());
+  std::vector<std::vector<Color>> weights;
+  const int frames = std::max(1, arguments.frames);
+  for (int f = 0; f < frames; ++f) {
+    weights.push_back(RelightWeights(capture, cells, map, arguments.rotate + 360.0 * f / frames));
+  }
+  const fs::path folder = arguments.output.empty() ? capture.name + "-relit" : arguments.output;
+  RefuseAmongImages(capture, folder);
+  const fs::path frame_folder = folder / "frames";
+  sfm::MakeOutputFolder(arguments.frames > 0 ? frame_folder : folder);
+  // One exposure for the whole film: by its first frame.
+  std::optional<double> stops = arguments.exposure;
+  std::optional<double> psnr;
+  const bool finished = Relight(
+      capture, arguments.olat.encoding, weights, std::int64_t{arguments.memory_mb} << 20,
+      [&] { return !stop; },
+      [&](int frame, const Image& picture) {
+        if (!stops) stops = AutoExposure(picture);
+        if (frame == 0) {
+          if (!arguments.truth.empty()) psnr = PsnrAgainst(arguments.truth, picture, *stops);
+          WriteImage(folder / "relit.exr", picture);
+          WriteImage(folder / "relit.png", Exposed(picture, *stops));
+        }
+        if (arguments.frames > 0) {
+          WriteImage(frame_folder / FrameName(frame), Exposed(picture, *stops));
+        }
+      });
+  if (!finished) {
+    fmt::print("stopped; the pictures that are done are in {}\n", folder.string());
+    throw CLI::RuntimeError(130);
+  }
+  if (arguments.frames > 0) {
+    WriteVideo(frame_folder, frames, kFramesPerSecond, folder / "rotation.mp4");
+  }
+  fmt::print(
+      "{}: {} lights{}, {} x {} pixels, {} picture{} at {:+.2f} stops in {:.1f} s\n"
+      "relit.png and relit.exr (linear){} are in {}\n",
+      capture.name, capture.lights.size(), cells.on_a_grid() ? " on a grid" : "", capture.width,
+      capture.height, frames, frames == 1 ? "" : "s", *stops, watch.Seconds(),
+      arguments.frames > 0 ? " and rotation.mp4" : "", folder.string());
+  if (psnr) fmt::print("{:.2f} dB from {}\n", *psnr, arguments.truth);
+}
+
+}  // namespace
+
+void AddRelightCommand(CLI::App& app) {
+  auto arguments = std::make_shared<RelightArguments>();
+  CLI::App* command = app.add_subcommand(
+      "relight",
+      "A light-stage capture under any environment: a picture, or its rotation as a film");
+  command
+      ->add_option("capture", arguments->capture,
+                   "a folder with an image for each light, and lights.txt or a folder chrome")
+      ->required();
+  command
+      ->add_option("--environment", arguments->environment,
+                   std::string("an HDR or EXR map, twice as wide as high, or a light's name: ") +
+                       kLightNames)
+      ->required();
+  command->add_option("-o,--output", arguments->output, "folder of the results; NAME-relit");
+  command
+      ->add_option("--rotate", arguments->rotate,
+                   "degrees by which the environment is turned about the vertical")
+      ->capture_default_str();
+  command->add_option("--frames", arguments->frames,
+                      "of a film in which it turns round once (with ffmpeg)");
+  command->add_option("--exposure", arguments->exposure,
+                      "stops of the PNG; default: bright parts just below white");
+  command->add_option("--truth", arguments->truth,
+                      "a picture directly under the environment, to tell the PSNR against");
+  command->add_option("--lights", arguments->olat.lights, "a light file, chrome, or auto")
+      ->capture_default_str();
+  AddInputEncodingOption(*command, arguments->olat.encoding,
+                         "of the images: srgb, linear, or auto: 8 bits are srgb, all else is "
+                         "linear");
+  command->add_option("--memory-mb", arguments->memory_mb, "for pixels")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  nerf sample stage --light-stage 256                 makes such a capture\n"
+      "  nerf relight stage --environment venice_sunset_1k.hdr\n"
+      "  nerf relight stage --environment venice_sunset_1k.hdr --frames 72\n"
+      "  nerf relight stage --environment blackbody:3200 --exposure 0");
+  command->callback([arguments] { RunRelight(*arguments); });
+}
+
+}  // namespace nerf

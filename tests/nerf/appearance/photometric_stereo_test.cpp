@@ -1,0 +1,153 @@
+#include "nerf/appearance/photometric_stereo.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "tests/support/input_error_of.h"
+#include "tests/support/lit_sphere.h"
+
+namespace nerf::appearance {
+namespace {
+
+using Eigen::Vector3d;
+using ::testing::HasSubstr;
+
+constexpr double kAlbedo = 0.6;
+
+StereoOptions By(StereoMethod method) {
+  StereoOptions options;
+  options.method = method;
+  return options;
+}
+
+// Mean angle between the estimated and the true normals, in degrees; says it, for the README.
+double MeanError(const std::vector<DirectionalLight>& lights,
+                 const std::vector<test::SpherePixel>& sphere, StereoMethod method,
+                 const char* name) {
+  const PhotometricSolver solver(lights, By(method));
+  double sum = 0;
+  for (const auto& pixel : sphere) {
+    sum += test::DegreesBetween(solver.Solve(pixel.observations).normal, pixel.normal);
+  }
+  const double mean = sum / static_cast<double>(sphere.size());
+  std::cout << "mean angular error, " << name << ": " << mean << " degrees\n";
+  return mean;
+}
+
+TEST(PhotometricStereo, IsExactOnAMattSphereUnderTwelveLights) {
+  const auto lights = test::RingOfLights(12, 45);
+  const auto sphere = test::LitSphere(lights, kAlbedo);
+  EXPECT_LT(MeanError(lights, sphere, StereoMethod::kAuto, "no noise, auto"), 0.05);
+  EXPECT_LT(MeanError(lights, sphere, StereoMethod::kRobust, "no noise, robust"), 0.05);
+}
+
+TEST(PhotometricStereo, LeastSquaresIsExactWhereEveryLightReachesTheSurface) {
+  const auto lights = test::RingOfLights(12, 45);
+  const PhotometricSolver solver(lights, By(StereoMethod::kLeastSquares));
+  int compared = 0;
+  for (const auto& pixel : test::LitSphere(lights, kAlbedo)) {
+    if (std::ranges::any_of(pixel.observations, [](double b) { return b == 0; })) continue;
+    const SurfaceEstimate estimate = solver.Solve(pixel.observations);
+    ASSERT_LT(test::DegreesBetween(estimate.normal, pixel.normal), 1e-6);
+    ASSERT_NEAR(estimate.albedo, kAlbedo, 1e-9);
+    ASSERT_LT(estimate.residual, 1e-9);
+    ++compared;
+  }
+  EXPECT_GT(compared, 1000);
+}
+
+// The reason why there is a robust method at all.
+TEST(PhotometricStereo, SurvivesShadowsAndHighlightsThatMisleadLeastSquares) {
+  const auto lights = test::RingOfLights(12, 45);
+  const auto sphere = test::LitSphere(lights, kAlbedo, {.shadows = 0.1, .highlights = 0.1});
+  const double plain = MeanError(lights, sphere, StereoMethod::kLeastSquares,
+                                 "20 % shadows and highlights, least squares");
+  EXPECT_GT(plain, 5);
+  EXPECT_LT(MeanError(lights, sphere, StereoMethod::kRobust, "20 % shadows and highlights, robust"),
+            1);
+  EXPECT_LT(MeanError(lights, sphere, StereoMethod::kAuto, "20 % shadows and highlights, auto"), 1);
+}
+
+TEST(PhotometricStereo, SurvivesTwentyPerCentOfEitherKind) {
+  const auto lights = test::RingOfLights(24, 45);
+  EXPECT_LT(MeanError(lights, test::LitSphere(lights, kAlbedo, {.shadows = 0.2}),
+                      StereoMethod::kRobust, "20 % shadows, 24 lights"),
+            1);
+  EXPECT_LT(MeanError(lights, test::LitSphere(lights, kAlbedo, {.highlights = 0.2}),
+                      StereoMethod::kRobust, "20 % highlights, 24 lights"),
+            1);
+}
+
+TEST(PhotometricStereo, NoiseCostsRobustnessLittle) {
+  const auto lights = test::RingOfLights(12, 45);
+  const auto sphere = test::LitSphere(lights, kAlbedo, {.noise = 0.01});
+  EXPECT_LT(MeanError(lights, sphere, StereoMethod::kRobust, "1 % noise, robust"), 2.5);
+  EXPECT_LT(MeanError(lights, sphere, StereoMethod::kAuto, "1 % noise, auto"), 2.5);
+}
+
+TEST(PhotometricStereo, AutoStaysWithLeastSquaresWhereItExplainsTheImages) {
+  const auto lights = test::RingOfLights(12, 30);
+  const PhotometricSolver solver(lights, By(StereoMethod::kAuto));
+  std::vector<double> observations;
+  const Vector3d normal = Vector3d(0.1, -0.2, 0.9).normalized();
+  for (const auto& light : lights) observations.push_back(light.to_light.dot(normal));
+  EXPECT_FALSE(solver.Solve(observations).robust);
+  observations[3] = 0;
+  const SurfaceEstimate estimate = solver.Solve(observations);
+  EXPECT_TRUE(estimate.robust);
+  EXPECT_LT(test::DegreesBetween(estimate.normal, normal), 1e-3);
+}
+
+TEST(PhotometricStereo, LeavesOutSaturatedObservations) {
+  const auto lights = test::RingOfLights(6, 40);
+  const Vector3d normal = Vector3d(0.1, 0.1, 0.9).normalized();
+  for (const StereoMethod method :
+       {StereoMethod::kLeastSquares, StereoMethod::kRobust, StereoMethod::kAuto}) {
+    std::vector<double> observations;
+    for (const auto& light : lights) observations.push_back(light.to_light.dot(normal));
+    observations[2] = -1;
+    const auto estimate = PhotometricSolver(lights, By(method)).Solve(observations);
+    EXPECT_LT(test::DegreesBetween(estimate.normal, normal), 1e-5);
+  }
+}
+
+TEST(PhotometricStereo, SaysNothingOfPixelsThatStayDark) {
+  const auto lights = test::RingOfLights(6, 40);
+  const std::vector<double> dark(6, 0.0);
+  for (const StereoMethod method :
+       {StereoMethod::kLeastSquares, StereoMethod::kRobust, StereoMethod::kAuto}) {
+    EXPECT_EQ(PhotometricSolver(lights, By(method)).Solve(dark).albedo, 0);
+  }
+}
+
+TEST(PhotometricStereo, RefusesFewerThanThreeLights) {
+  EXPECT_THAT(test::InputErrorOf([] { PhotometricSolver(test::RingOfLights(2, 40), {}); }),
+              HasSubstr("three or more"));
+}
+
+TEST(PhotometricStereo, RefusesLightsInOnePlane) {
+  std::vector<DirectionalLight> lights;
+  for (const double x : {-0.5, -0.2, 0.1, 0.4}) lights.push_back({Vector3d(x, x, 1).normalized()});
+  EXPECT_THAT(test::InputErrorOf([&] { PhotometricSolver(lights, {}); }), HasSubstr("one plane"));
+}
+
+TEST(PhotometricStereo, RefusesOptionsOutOfRange) {
+  const auto lights = test::RingOfLights(6, 40);
+  StereoOptions options;
+  options.dark = 2;
+  EXPECT_THAT(test::InputErrorOf([&] { PhotometricSolver(lights, options); }), HasSubstr("--dark"));
+  options = {};
+  options.tolerance = 0;
+  EXPECT_THAT(test::InputErrorOf([&] { PhotometricSolver(lights, options); }),
+              HasSubstr("--tolerance"));
+  options = {};
+  options.largest_residual = -1;
+  EXPECT_THAT(test::InputErrorOf([&] { PhotometricSolver(lights, options); }),
+              HasSubstr("--residual"));
+}
+
+}  // namespace
+}  // namespace nerf::appearance
