@@ -17,9 +17,10 @@
 namespace nerf {
 namespace {
 
-// The evidence for these is shown, but they are only simulated when asked for: on generated captures
-// they have not been worth a decibel yet (README, "Effects").
-const std::set<std::string> kByRequestOnly = {"background", "robust"};
+// What automatic choices act on so far. The evidence for the others is shown, and they are simulated
+// when asked for: on generated captures they have not been worth a decibel yet (README, "Effects"),
+// and to leave directions away has not been measured on real ones.
+const std::set<std::string> kAutomatic = {"exposure", "masks"};
 
 // Trials tell what shows early; that colour depends on the direction shows late.
 const std::set<std::string> kTried = {"exposure"};
@@ -62,11 +63,9 @@ EffectsChoice ChooseEffects(const sfm::PosedImages& posed, const std::set<std::s
     choice.inspection = Inspect(posed, [&](int read) { progress.Update(read); });
     progress.Finish();
   }
-  const std::vector<std::string> known = EffectNames();
   for (const Verdict& verdict : choice.inspection.verdicts) {
-    const bool effect = std::ranges::find(known, verdict.effect) != known.end();
-    if (!effect || verdict.Sure() < kSureEnough || named.contains(verdict.effect)) continue;
-    if (kByRequestOnly.contains(verdict.effect) && verdict.on) continue;
+    const bool acts = kAutomatic.contains(verdict.effect) && !named.contains(verdict.effect);
+    if (!acts || verdict.Sure() < kSureEnough) continue;
     choice.assignments.push_back(EffectAssignment(verdict.effect, verdict.setting));
   }
   choice.seconds = watch.Seconds();

@@ -1,5 +1,8 @@
 #include "nerf/effects/effects_options.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "sfm/input_error.h"
 
 namespace nerf {
@@ -7,6 +10,10 @@ namespace nerf {
 void BackgroundOptions::Check() const {
   if (resolution >= 2 && resolution <= 1024) return;
   throw sfm::InputError("config: effects.background.resolution is {}; use 2 to 1024", resolution);
+}
+
+RobustOptions RobustOptions::At(double progress) const {
+  return {scale * std::pow(100.0, std::clamp(1 - 2 * progress, 0.0, 1.0))};
 }
 
 void RobustOptions::Check() const {

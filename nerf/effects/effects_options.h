@@ -24,7 +24,13 @@ struct ViewOptions {};
 // counts as l / (1 + l / scale), so that a large one, which nothing can make small, pulls little.
 // Source: Geman and McClure 1985.
 struct RobustOptions {
-  double scale = 0.05;  // the loss of a ray whose pull is a quarter of what it was
+  double scale = 0.05;  // the loss of a ray whose pull is a quarter of what it was, in the end
+
+  // At the beginning every ray is wrong, and those that are the most wrong have the most to tell:
+  // the scale falls from a hundred times as much, along a power, until half of the training is
+  // over.
+  //   progress  in [0, 1]
+  RobustOptions At(double progress) const;
 
   void Check() const;
 };

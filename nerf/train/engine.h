@@ -60,6 +60,9 @@ class Engine : public RayRenderer {
   // Throws NonFiniteError when the loss is not finite.
   virtual StepResult AccumulateGradients(const TargetBatch& batch) = 0;
 
+  // How much of the training is over, in [0, 1], for what changes on the way; 1 before it is told.
+  virtual void SetProgress(double progress) = 0;
+
   // Draws fresh densities into the occupancy grid; nothing where a proposal takes its place.
   virtual void UpdateOccupancy(std::int64_t step, std::uint64_t seed) = 0;
 };

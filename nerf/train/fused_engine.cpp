@@ -42,6 +42,10 @@ FusedEngine::FusedEngine(EngineParts parts) : parts_(std::move(parts)), forward_
 
 FusedEngine::~FusedEngine() = default;
 
+void FusedEngine::SetProgress(double progress) {
+  if (parts_.robust) pixel_model_.robust = parts_.robust->At(progress);
+}
+
 void FusedEngine::Refresh() {
   forward_.Refresh();
   if (parts_.background) background_ = parts_.background->Map();

@@ -19,6 +19,7 @@ class FusedEngine : public Engine {
 
   RenderOutput Render(const RayBatch& rays) override;
   StepResult AccumulateGradients(const TargetBatch& batch) override;
+  void SetProgress(double progress) override;
   void UpdateOccupancy(std::int64_t step, std::uint64_t seed) override;
 
  private:

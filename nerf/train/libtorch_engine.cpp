@@ -61,7 +61,12 @@ struct LibTorchEngine::Evaluated {
   VolumeRendering pixels;
 };
 
-LibTorchEngine::LibTorchEngine(EngineParts parts) : parts_(std::move(parts)) {}
+LibTorchEngine::LibTorchEngine(EngineParts parts)
+    : parts_(std::move(parts)), robust_(parts_.robust) {}
+
+void LibTorchEngine::SetProgress(double progress) {
+  if (parts_.robust) robust_ = parts_.robust->At(progress);
+}
 
 // Densities without gradients, a chunk of positions at a time.
 std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
@@ -156,7 +161,7 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
     rgb = parts_.exposure->forward(
         rgb, TensorOf(batch.photograph, {batch.rays.Size()}, torch::kLong), target);
   }
-  const torch::Tensor loss = ColorLoss(rgb, target, parts_.loss, parts_.robust);
+  const torch::Tensor loss = ColorLoss(rgb, target, parts_.loss, robust_);
   StepResult result;
   result.loss = loss.item<double>();
   if (!std::isfinite(result.loss)) {
@@ -172,7 +177,7 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   if (total.requires_grad()) total.backward();
   torch::Tensor of_ray = (rgb.detach() - target).square().mean(1);
   result.squared_error = of_ray.mean().item<double>();
-  if (parts_.robust) of_ray = of_ray * RobustPull(rgb, target, parts_.loss, *parts_.robust);
+  if (robust_) of_ray = of_ray * RobustPull(rgb, target, parts_.loss, *robust_);
   of_ray = of_ray.to(torch::kFloat).contiguous();
   const auto ray_error = Span<const float>(of_ray);
   result.ray_error.assign(ray_error.begin(), ray_error.end());

@@ -19,6 +19,7 @@ class LibTorchEngine : public Engine {
 
   RenderOutput Render(const RayBatch& rays) override;
   StepResult AccumulateGradients(const TargetBatch& batch) override;
+  void SetProgress(double progress) override;
   void UpdateOccupancy(std::int64_t step, std::uint64_t seed) override;
 
  private:
@@ -29,6 +30,7 @@ class LibTorchEngine : public Engine {
   std::vector<float> Densities(std::span<const float> positions, DensityFunction density);
 
   EngineParts parts_;
+  std::optional<RobustOptions> robust_;  // as it is now
 };
 
 }  // namespace nerf

@@ -33,7 +33,7 @@ bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int6
   dL_ddepth.assign(count, 0.0f);
   double of_tile = 0;
   for (std::int64_t r = 0; r < count; ++r) {
-    const std::int64_t photograph = 3 * batch.photograph[first + r];
+    const std::int64_t photograph = model.gain.empty() ? 0 : 3 * batch.photograph[first + r];
     const float* const gain = model.gain.empty() ? nullptr : &model.gain[photograph];
     double squared = 0, of_ray = 0;
     std::array<double, 3> shown{}, dL_dshown{};

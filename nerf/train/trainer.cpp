@@ -141,6 +141,7 @@ StepResult Trainer::State::Learn(StepSeconds& seconds) {
       model.engine->UpdateOccupancy(step, options.seed);
     }
     timer.Lap(seconds.occupancy);
+    model.engine->SetProgress(pace.Progress(step));
     const TargetBatch batch = sampler.Sample(rays_per_batch, options.seed, step);
     timer.Lap(seconds.pixels);
     const StepResult result = model.engine->AccumulateGradients(batch);

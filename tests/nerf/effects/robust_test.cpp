@@ -25,6 +25,16 @@ TEST(RobustLoss, ALargeErrorPullsLessThanASmallOne) {
   EXPECT_GT(pull(0.8), 0);
 }
 
+TEST(RobustLoss, IsTheOrdinaryLossAtTheBeginningOfATraining) {
+  const RobustOptions options;
+  EXPECT_NEAR(options.At(0).scale, 100 * options.scale, 1e-9);
+  EXPECT_NEAR(options.At(0.5).scale, options.scale, 1e-12);
+  EXPECT_NEAR(options.At(1).scale, options.scale, 1e-12);
+  const torch::Tensor target = torch::zeros({4, 3}), predicted = torch::full({4, 3}, 0.3);
+  const double plain = ColorLoss(predicted, target, {}, {}).item<double>();
+  EXPECT_NEAR(ColorLoss(predicted, target, {}, options.At(0)).item<double>() / plain, 1, 0.06);
+}
+
 TEST(RobustLoss, GradientsMatchCentralDifferences) {
   const torch::Tensor target = torch::rand({6, 3}, torch::kDouble);
   const torch::Tensor predicted =
@@ -43,7 +53,11 @@ TEST(RobustLoss, MeansTheSameInBothEngines) {
     e.loss.kind = kind;
     e.robust = RobustOptions();
     e.Make(50);
-    e.ExpectTheSame();
+    for (const double progress : {0.0, 0.3, 1.0}) {
+      e.libtorch->SetProgress(progress);
+      e.fused->SetProgress(progress);
+      e.ExpectTheSame();
+    }
   }
 }
 
