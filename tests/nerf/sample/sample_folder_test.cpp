@@ -49,11 +49,13 @@ std::string Bytes(const fs::path& file) {
 TEST(SampleFolder, HoldsPhotographsAndTheTruthApart) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path() / "new" / "demo", Tiny());
-  EXPECT_THAT(NamesIn(scratch.path() / "new" / "demo"),
-              ElementsAre("images/view_000.png", "images/view_001.png", "truth/transforms.json",
-                          "truth/view_000.albedo.exr", "truth/view_000.depth.exr",
-                          "truth/view_000.normal.exr", "truth/view_001.albedo.exr",
-                          "truth/view_001.depth.exr", "truth/view_001.normal.exr"));
+  EXPECT_THAT(
+      NamesIn(scratch.path() / "new" / "demo"),
+      ElementsAre("images/view_000.png", "images/view_001.png", "truth/sparse/cameras.txt",
+                  "truth/sparse/images.txt", "truth/sparse/points3D.txt", "truth/transforms.json",
+                  "truth/view_000.albedo.exr", "truth/view_000.depth.exr",
+                  "truth/view_000.normal.exr", "truth/view_001.albedo.exr",
+                  "truth/view_001.depth.exr", "truth/view_001.normal.exr"));
 }
 
 TEST(SampleFolder, HoldsWhatACaptureInMemoryHolds) {
@@ -90,19 +92,22 @@ TEST(SampleFolder, WrittenTwiceIsTheSameByteForByte) {
 
 TEST(SampleFolder, LosesTheViewsThatAnEarlierSampleHadMore) {
   const test::ScratchFolder scratch;
+  WriteSample(scratch.path(), Tiny(2));
+  const auto two = NamesIn(scratch.path());
   WriteSample(scratch.path(), Tiny(4));
   WriteSample(scratch.path(), Tiny(2));
-  EXPECT_EQ(NamesIn(scratch.path()).size(), 9u);
+  EXPECT_EQ(NamesIn(scratch.path()), two);
 }
 
 TEST(SampleFolder, IsFinishedAfterAnInterruptedRun) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path(), Tiny());
+  const auto whole = NamesIn(scratch.path());
   fs::remove(scratch.path() / "truth/transforms.json");
   scratch.Write("images/.view_001.4242-7.png", "half");
   scratch.Write("truth/transforms.json.tmp4242", "half");
   WriteSample(scratch.path(), Tiny());
-  EXPECT_EQ(NamesIn(scratch.path()).size(), 9u);
+  EXPECT_EQ(NamesIn(scratch.path()), whole);
 }
 
 TEST(SampleFolder, LetsStandWhatOthersPutBesideImagesAndTruth) {
