@@ -1,6 +1,7 @@
 #include "nerf/commands/effects_choice.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -17,9 +18,9 @@
 namespace nerf {
 namespace {
 
-// What automatic choices act on so far. The evidence for the others is shown, and they are simulated
-// when asked for: on generated captures they have not been worth a decibel yet (README, "Effects"),
-// and to leave directions away has not been measured on real ones.
+// What automatic choices act on so far. The evidence for the others is shown, and they are
+// simulated when asked for: on generated captures they have not been worth a decibel yet (README,
+// "Effects"), and to leave directions away has not been measured on real ones.
 const std::set<std::string> kAutomatic = {"exposure", "masks"};
 
 // Trials tell what shows early; that colour depends on the direction shows late.
@@ -62,6 +63,8 @@ EffectsChoice ChooseEffects(const sfm::PosedImages& posed, const std::set<std::s
     sfm::ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
     choice.inspection = Inspect(posed, [&](int read) { progress.Update(read); });
     progress.Finish();
+    const std::string& warning = choice.inspection.warning;
+    if (!warning.empty()) spdlog::warn("{}", warning);
   }
   for (const Verdict& verdict : choice.inspection.verdicts) {
     const bool acts = kAutomatic.contains(verdict.effect) && !named.contains(verdict.effect);

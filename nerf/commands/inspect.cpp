@@ -1,6 +1,7 @@
 #include "nerf/inspect/inspect.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -51,6 +52,7 @@ void RunInspect(const InspectArguments& arguments) {
   sfm::ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
   const Inspection inspection = Inspect(posed, [&](int read) { progress.Update(read); });
   progress.Finish();
+  if (!inspection.warning.empty()) spdlog::warn("{}", inspection.warning);
   if (arguments.json) {
     fmt::print(
         "{}\n",

@@ -142,7 +142,7 @@ double SpentOf(const Config& config, const Stopwatch& watch) {
   return budget / 2;
 }
 
-// The exposures that the inspection has found, of the photographs that are trained on.
+// The exposures that the inspection knows, of the photographs that are trained on.
 std::vector<double> StopsOf(const sfm::PosedImages& posed, const Inspection& inspection,
                             const Dataset& data) {
   std::map<std::string, double> stops_of;

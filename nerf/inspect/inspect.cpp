@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "nerf/data/mask.h"
+#include "nerf/inspect/exif_stops.h"
 #include "nerf/inspect/photograph_facts.h"
 #include "nerf/inspect/photograph_fit.h"
 #include "nerf/inspect/track_colors.h"
@@ -87,8 +88,8 @@ void AddFacts(const PhotographFacts& facts, std::vector<Verdict>& verdicts) {
       cut_out ? R"({"meaning": "empty"})" : R"({"meaning": "ignore"})"));
 }
 
-// Exposures, from the photographs' parts of the colours.
-Verdict JudgeExposure(const std::vector<double>& stops) {
+//   where  says what shows the exposures
+Verdict JudgeExposure(const std::vector<double>& stops, const char* where) {
   double squares = 0, largest = 0;
   for (const double s : stops) {
     squares += s * s;
@@ -96,9 +97,9 @@ Verdict JudgeExposure(const std::vector<double>& stops) {
   }
   const double spread = std::sqrt(squares / static_cast<double>(stops.size()));
   return Measured("exposure", spread, kExposureStops,
-                  fmt::format("photographs differ by {:.2f} stops ({:.2f} at most) in the same "
-                              "points; {:.2f} call for it",
-                              spread, largest, kExposureStops));
+                  fmt::format("photographs differ by {:.2f} stops ({:.2f} at most) {}; {:.2f} "
+                              "call for it",
+                              spread, largest, where, kExposureStops));
 }
 
 // The share of points whose colour changes from view to view by more than an error of a pixel, or
@@ -174,10 +175,14 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   const PhotographFacts facts = LookAtPhotographs(posed);
   AddFacts(facts, inspection.verdicts);
   if (posed.points.size() < kFewestPoints || posed.images.size() < kFewestPhotographs) {
-    for (const char* effect : {"view", "background", "exposure", "robust"}) {
-      const bool shows_none = facts.transparent > 0 && effect == std::string("background");
-      inspection.verdicts.push_back(shows_none ? NoBackground() : Undecided(effect));
-    }
+    const ExifStops exif = ReadExifStops(posed);
+    inspection.stops = exif.stops;
+    inspection.warning = exif.contradiction;
+    inspection.verdicts.push_back(Undecided("view"));
+    inspection.verdicts.push_back(facts.transparent > 0 ? NoBackground() : Undecided("background"));
+    inspection.verdicts.push_back(exif.stops.empty() ? Undecided("exposure")
+                                                     : JudgeExposure(exif.stops, "by their EXIF"));
+    inspection.verdicts.push_back(Undecided("robust"));
     return inspection;
   }
   const TrackColors colors = ReadTrackColors(posed, kNearby, read);
@@ -187,7 +192,7 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   }
   inspection.verdicts.push_back(JudgeView(colors, fit));
   inspection.verdicts.push_back(JudgeBackground(posed, facts.transparent > 0));
-  inspection.verdicts.push_back(JudgeExposure(inspection.stops));
+  inspection.verdicts.push_back(JudgeExposure(inspection.stops, "in the same points"));
   inspection.verdicts.push_back(JudgePassers(colors, fit));
   return inspection;
 }

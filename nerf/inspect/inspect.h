@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "nerf/inspect/verdict.h"
@@ -11,11 +12,15 @@ namespace nerf {
 // What a capture calls for, found from what is there before anything is trained.
 struct Inspection {
   std::vector<Verdict> verdicts;
-  std::vector<double> stops;  // exposure of each photograph against the mean; empty: unknown
+  // Exposure of each photograph against the mean: as the sparse points show it, else as EXIF tells
+  // of it; empty: unknown.
+  std::vector<double> stops;
+  std::string warning;  // about the input, one line; or empty
 };
 
 // Looks at the photographs, and at the sparse points where structure from motion has left some:
-// the colours of each point over the photographs that see it.
+// the colours of each point over the photographs that see it. Without points, EXIF may tell of the
+// exposures.
 //   read  called with the number of photographs read
 // Throws sfm::InputError naming a mask that is broken.
 Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read = {});
