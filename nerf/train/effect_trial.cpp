@@ -15,6 +15,14 @@ constexpr int kTimed = 10;  // steps at a time
 
 }  // namespace
 
+double MegabytesOf(const Model& model) {
+  double bytes = 0;
+  for (const auto& [name, parameter] : NamedParameters(model)) {
+    bytes += 4.0 * static_cast<double>(parameter.nbytes());
+  }
+  return bytes * 0x1p-20;
+}
+
 TrialResult TryConfig(Config config, const SceneFacts& scene, const Dataset& data, int steps) {
   TORCH_CHECK(!data.validation.empty(), "TryConfig: no validation photographs");
   config.train.steps = steps;
@@ -31,9 +39,7 @@ TrialResult TryConfig(Config config, const SceneFacts& scene, const Dataset& dat
   TrialResult result;
   result.seconds_a_step = seconds[seconds.size() / 2];
   result.psnr = trainer.ValidationPsnr();
-  for (const auto& [name, parameter] : NamedParameters(trainer.GetModel())) {
-    result.megabytes += 4.0 * static_cast<double>(parameter.nbytes()) * 0x1p-20;
-  }
+  result.megabytes = MegabytesOf(trainer.GetModel());
   result.seconds = watch.Seconds();
   return result;
 }

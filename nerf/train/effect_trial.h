@@ -16,6 +16,9 @@ struct TrialResult {
   double megabytes = 0;       // of parameters, with their gradients and Adam's moments
 };
 
+// What a model's training holds: parameters, their gradients, and Adam's two moments.
+double MegabytesOf(const Model& model);
+
 // Trains a new model for so many steps, with the learning rate at its last value in the end, and
 // keeps nothing. The same seed draws the same rays, so that two trials differ by their
 // configurations alone. Needs validation photographs.
