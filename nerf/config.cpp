@@ -30,7 +30,8 @@ void from_json(const json&, ExposureOptions&) {}
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BackgroundOptions, resolution)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaskOptions, meaning)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RobustOptions, scale)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EffectsOptions, view, background, exposure, masks, robust)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DepthOptions, share, weight, delta)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EffectsOptions, view, background, exposure, masks, robust, depth)
 
 // Each options struct's keys, once, for reading and writing.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataOptions, downscale, test_every, validation_images, memory_mb)
@@ -91,6 +92,7 @@ const json& EffectsWithDefaults() {
     effects.exposure.emplace();
     effects.masks.emplace();
     effects.robust.emplace();
+    effects.depth.emplace();
     return json(effects);
   }();
   return all;

@@ -76,7 +76,8 @@ void MeasureEffects(const OpenedRun& run, int steps, bool json,
                     const std::filesystem::path& output) {
   const Config& config = run.model.config;
   const sfm::PosedImages posed = MeasuredOnHeldOut(run.posed.source);
-  const Dataset data = LoadOrWarn(posed, config, run.model.scene.normalized_from_world);
+  const Dataset data = LoadOrWarn(posed, config, run.model.scene.normalized_from_world,
+                                  run.posed.source.parent_path());
   const SceneFacts scene = FactsOf(data, run.model.scene.normalized_from_world);
   std::vector<std::string> effects;
   for (const std::string& effect : EffectNames()) {

@@ -19,9 +19,8 @@ struct SampleArguments {
   sample::SampleOptions options;
 };
 
-void RunSample(SampleArguments& arguments) {
+void RunSample(const SampleArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
-  arguments.options.occasion = sample::OccasionFromName(arguments.calls_for);
   sample::WriteSample(folder, arguments.options);
   fmt::print(
       "{} photographs are in {}; true poses, depth, normals and albedo, for tests only, in {}\n"
@@ -44,7 +43,8 @@ void AddSampleCommand(CLI::App& app) {
       ->add_option("--calls-for", arguments->calls_for,
                    "a capture that calls for one effect: " + sample::OccasionNames())
       ->capture_default_str();
-  command->add_option("--views", options.views, "how many photographs")->capture_default_str();
+  const CLI::Option* const views = command->add_option(
+      "--views", options.views, "how many photographs [36; few where they call for depth]");
   command->add_option("--width", options.width, "of a photograph, in pixels")
       ->capture_default_str();
   command->add_option("--height", options.height, "of a photograph, in pixels")
@@ -62,7 +62,10 @@ void AddSampleCommand(CLI::App& app) {
       "  nerf sample demo --views 60 --width 800 --height 600\n"
       "  nerf sample drift --calls-for exposure    exposure and white balance change\n"
       "  nerf train demo                           then train on them");
-  command->callback([arguments] {
+  command->callback([arguments, views] {
+    const sample::Occasion occasion = sample::OccasionFromName(arguments->calls_for);
+    arguments->options.occasion = occasion;
+    if (views->count() == 0) arguments->options.views = sample::UsualViews(occasion);
     if (arguments->light_stage.Given()) {
       RunLightStage(arguments->folder, arguments->light_stage, arguments->options.width,
                     arguments->options.height, arguments->options.threads);

@@ -183,6 +183,7 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
     config = take_over_effects();
   }
   sfm::MakeOutputFolder(run);
+  KeepSparsePoints(found, config, run);
   if (effects.inspect) PrintEffects(choice, named);
   const sfm::SceneNormalization normalized_from_world = sfm::NormalizeScene(found);
   // First, for it marks the folder as a run's own.
@@ -192,7 +193,7 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
 
   PrintDataPlan(posed, config.data, threads);
-  const Dataset data = LoadOrWarn(posed, config, normalized_from_world);
+  const Dataset data = LoadOrWarn(posed, config, normalized_from_world, run);
   SceneFacts scene = FactsOf(data, normalized_from_world);
   scene.exposure_stops = StopsOf(found, choice.inspection, data);
   if (effects.inspect) {
@@ -234,7 +235,7 @@ void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads
   const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run));
   WarnOfMissing(posed);
   PrintDataPlan(posed, model.config.data, threads);
-  const Dataset data = LoadOrWarn(posed, model.config, model.scene.normalized_from_world);
+  const Dataset data = LoadOrWarn(posed, model.config, model.scene.normalized_from_world, run);
   Trainer trainer(checkpoint, data, run, watch.Seconds());
   Report(trainer.Run(StopOnInterrupt()), model.config.train, run);
 }

@@ -8,8 +8,12 @@
 #include <vector>
 
 #include "nerf/data/camera.h"
+#include "nerf/effects/depth.h"
 #include "nerf/train/run_folder.h"
+#include "sfm/atomic_file.h"
+#include "sfm/colmap_model.h"
 #include "sfm/colmap_runner.h"
+#include "sfm/colmap_text_writer.h"
 #include "sfm/input_error.h"
 #include "sfm/masks.h"
 #include "sfm/pose_input.h"
@@ -30,6 +34,13 @@ std::string SomeOf(const std::vector<std::string>& names) {
   }
   if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
   return text;
+}
+
+// The folder in which an image's name is its path.
+fs::path ImageFolder(const sfm::PosedImage& image) {
+  fs::path folder = image.path;
+  for ([[maybe_unused]] const fs::path& part : fs::path(image.name)) folder = folder.parent_path();
+  return folder;
 }
 
 }  // namespace
@@ -87,8 +98,20 @@ void WarnOfMissing(const sfm::PosedImages& posed) {
                SomeOf(posed.missing));
 }
 
+void KeepSparsePoints(const sfm::PosedImages& found, const Config& config, const fs::path& run) {
+  if (!config.effects.depth) return;
+  if (found.points.empty()) {
+    throw sfm::InputError(
+        "{}: effects.depth learns from sparse points, and there are none; give a COLMAP project or "
+        "photographs, or leave the effect away",
+        found.source.string());
+  }
+  sfm::MakeOutputFolder(SparsePath(run));
+  sfm::WriteColmapText(found, SparsePath(run));
+}
+
 Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
-                   const sfm::SceneNormalization& normalized_from_world) {
+                   const sfm::SceneNormalization& normalized_from_world, const fs::path& run) {
   if (config.effects.masks &&
       std::ranges::all_of(posed.images, [](const auto& image) { return image.mask.empty(); })) {
     throw sfm::InputError(
@@ -99,6 +122,11 @@ Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
   if (!data.skipped.empty()) {
     for (const std::string& reason : data.skipped) spdlog::warn("{}", reason);
     spdlog::warn("{} images could not be read and are left out", data.skipped.size());
+  }
+  if (config.effects.depth) {
+    const sfm::PosedImages sparse =
+        sfm::ReadColmapModel(SparsePath(run), ImageFolder(posed.images.front()));
+    AddSeenPoints(sparse, normalized_from_world, data);
   }
   return data;
 }

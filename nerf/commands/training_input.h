@@ -22,8 +22,15 @@ void WarnOfMissing(const sfm::PosedImages& posed);
 // A line on what will be read and held, before it is.
 void PrintDataPlan(const sfm::PosedImages& posed, const DataOptions& options, int threads);
 
-// The photographs; those that cannot be read are named and left out.
+// Keeps the sparse points in the run's folder where distances are to be learned from them. Throws
+// sfm::InputError where there are none.
+void KeepSparsePoints(const sfm::PosedImages& found, const Config& config,
+                      const std::filesystem::path& run);
+
+// The photographs, with the points that the run keeps; those that cannot be read are named and left
+// out.
 Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
-                   const sfm::SceneNormalization& normalized_from_world);
+                   const sfm::SceneNormalization& normalized_from_world,
+                   const std::filesystem::path& run);
 
 }  // namespace nerf

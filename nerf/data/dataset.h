@@ -41,6 +41,12 @@ struct DataPlan {
 };
 DataPlan PlanData(const sfm::PosedImages& posed, const DataOptions& options);
 
+// A point whose distance is known, as a photograph sees it.
+struct SeenPoint {
+  std::int64_t pixel = 0;  // y * width + x
+  float distance = 0;      // from the camera's centre, normalized units
+};
+
 // A photograph in memory, downscaled; RGBA as 16-bit floats: what training reads. Training draws a
 // few million pixels in all, so of photographs that do not fit a random share is as good: one pixel
 // of each of `held` stretches of equal length, row after row.
@@ -51,6 +57,7 @@ struct View {
   std::vector<Eigen::half> rgba;             // [held,4], straight alpha
   std::uint64_t seed = 0;                    // of the choice
   std::vector<std::uint32_t> whole;          // pixels to choose from, rising; empty: all
+  std::vector<SeenPoint> points;             // where distances are to be learned from
 
   std::int64_t Held() const { return static_cast<std::int64_t>(rgba.size() / 4); }
   // Where the held pixel k stands: y * width + x.

@@ -17,14 +17,18 @@ struct TargetBatch {
   std::vector<float> rgb;  // [R,3] composited on the ray's background where the photo has alpha
   std::vector<std::int64_t> photograph;  // [R] which of the views
   std::vector<std::int64_t> cell;        // [R] of the error map; empty where there is none
+  // [R] how far each ray sees, normalized units, 0 where that is not known; empty: nowhere.
+  std::vector<float> distance;
 };
 
 // Draws pixels of the training views as rays: each equally likely, but for a share of them that
-// stands where the field is still wrong. What is drawn is a function of seed, step and the error
-// map, whatever the number of threads. `views` must outlive the sampler.
+// stands where the field is still wrong, and a share that goes through the points of views that
+// have some. What is drawn is a function of seed, step and the error map, whatever the number of
+// threads. `views` must outlive the sampler.
 class PixelSampler {
  public:
-  explicit PixelSampler(const std::vector<View>& views, double error_driven_share = 0);
+  explicit PixelSampler(const std::vector<View>& views, double error_driven_share = 0,
+                        double point_share = 0);
 
   // The background of each ray is a random colour: it tells matter from a lucky backdrop, in the
   // prediction as in the transparent pixels of a photograph.
@@ -39,13 +43,16 @@ class PixelSampler {
   struct Drawn {
     std::size_t view = 0;
     std::int64_t held = 0;  // which of the view's held pixels
+    float distance = 0;     // where it is known
   };
+  std::optional<Drawn> DrawPoint(std::uint64_t bits) const;
   Drawn Draw(std::uint64_t bits) const;
 
   const std::vector<View>& views_;
-  double error_driven_share_;
+  double error_driven_share_, point_share_;
   std::optional<ErrorMap> errors_;
   std::vector<std::int64_t> first_pixel_;  // [views+1] running count
+  std::vector<std::int64_t> first_point_;  // [views+1] running count
 };
 
 // The rays through the centres of given pixels of a view, without jitter (0.5), on one background.

@@ -21,10 +21,23 @@ void RobustOptions::Check() const {
   throw sfm::InputError("config: effects.robust.scale is {}; use more than 0", scale);
 }
 
+void DepthOptions::Check() const {
+  if (!(share >= 0 && share <= 0.5)) {
+    throw sfm::InputError("config: effects.depth.share is {}; use 0 to 0.5", share);
+  }
+  if (!(weight >= 0)) {
+    throw sfm::InputError("config: effects.depth.weight is {}; use 0 or more", weight);
+  }
+  if (!(delta > 0)) {
+    throw sfm::InputError("config: effects.depth.delta is {}; use more than 0", delta);
+  }
+}
+
 void EffectsOptions::Check() const {
   if (background) background->Check();
   if (masks) masks->Check();
   if (robust) robust->Check();
+  if (depth) depth->Check();
 }
 
 }  // namespace nerf

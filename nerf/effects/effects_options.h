@@ -35,6 +35,15 @@ struct RobustOptions {
   void Check() const;
 };
 
+// Distances of sparse points, for captures of few photographs (nerf/effects/depth.h).
+struct DepthOptions {
+  double share = 0.1;   // of the rays, which go through points
+  double weight = 0.1;  // of their distances' loss against that of colours
+  double delta = 0.05;  // relative error from which on a point pulls no harder
+
+  void Check() const;
+};
+
 // The effects that a scene may call for, in the order in which light meets them. A block that is
 // there is an effect that is simulated; one that is not there costs nothing.
 struct EffectsOptions {
@@ -43,6 +52,7 @@ struct EffectsOptions {
   std::optional<ExposureOptions> exposure;
   std::optional<MaskOptions> masks;
   std::optional<RobustOptions> robust;
+  std::optional<DepthOptions> depth;
 
   void Check() const;
 };

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "nerf/data/camera.h"
 #include "nerf/data/mask.h"
 #include "nerf/inspect/exif_stops.h"
 #include "nerf/inspect/photograph_facts.h"
@@ -34,6 +35,7 @@ constexpr double kFarAway = 0.007;  // share of points beyond kFar
 constexpr double kFar = 8;          // radii of what the cameras look at
 constexpr double kPassing = 0.02;   // share of sightings that show something else
 constexpr double kSomethingElse = 0.35;  // log light, and four times what is usual
+constexpr double kFewPhotographs = 15;   // before which a point stands
 constexpr double kSteps = 2.0 / 255;     // spread of one colour, as files round it
 
 double Luminance(const Eigen::Vector3f& log_light) { return static_cast<double>(log_light.mean()); }
@@ -167,6 +169,29 @@ Verdict JudgeBackground(const sfm::PosedImages& posed, bool alpha) {
                               100 * share, kFar, 100 * kFarAway));
 }
 
+// Whether photographs alone leave open where matter stands.
+Verdict JudgeDepth(const sfm::PosedImages& posed) {
+  std::vector<double> photographs;
+  for (const sfm::SparsePoint& point : posed.points) {
+    int before = 0;
+    for (const sfm::PosedImage& image : posed.images) {
+      const sfm::Camera& camera = posed.cameras[image.camera];
+      const auto pixel =
+          PixelFromPoint(camera, image.world_from_camera.inverse() * point.x_in_world);
+      before += pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < camera.width &&
+                pixel->y() < camera.height;
+    }
+    photographs.push_back(before);
+  }
+  const double median = Quantile(photographs, 0.5);
+  Verdict verdict =
+      Fact("depth", median < kFewPhotographs, median,
+           fmt::format("a point stands before {:.0f} photographs; fewer than {:.0f} call for it",
+                       median, kFewPhotographs));
+  verdict.threshold = kFewPhotographs;
+  return verdict;
+}
+
 }  // namespace
 
 Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read) {
@@ -183,6 +208,7 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
     inspection.verdicts.push_back(exif.stops.empty() ? Undecided("exposure")
                                                      : JudgeExposure(exif.stops, "by their EXIF"));
     inspection.verdicts.push_back(Undecided("robust"));
+    inspection.verdicts.push_back(Undecided("depth"));
     return inspection;
   }
   const TrackColors colors = ReadTrackColors(posed, kNearby, read);
@@ -194,6 +220,7 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   inspection.verdicts.push_back(JudgeBackground(posed, facts.transparent > 0));
   inspection.verdicts.push_back(JudgeExposure(inspection.stops, "in the same points"));
   inspection.verdicts.push_back(JudgePassers(colors, fit));
+  inspection.verdicts.push_back(JudgeDepth(posed));
   return inspection;
 }
 

@@ -17,7 +17,7 @@ const std::vector<std::pair<std::string, Occasion>> kNames = {
     {"view", Occasion::kView},         {"background", Occasion::kBackground},
     {"exposure", Occasion::kExposure}, {"masks", Occasion::kMasks},
     {"alpha", Occasion::kAlpha},       {"robust", Occasion::kRobust},
-    {"hdr", Occasion::kHdr},
+    {"depth", Occasion::kDepth},       {"hdr", Occasion::kHdr},
 };
 
 constexpr double kStops = 1.0;          // by which exposures differ from their mean, at most
@@ -52,6 +52,8 @@ std::string OccasionNames() {
   for (const auto& [name, occasion] : kNames) names += (names.empty() ? "" : ", ") + name;
   return names;
 }
+
+int UsualViews(Occasion occasion) { return occasion == Occasion::kDepth ? 9 : 36; }
 
 Scene SceneOf(Occasion occasion) {
   Scene scene = BuiltInScene();

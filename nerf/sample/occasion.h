@@ -20,6 +20,7 @@ enum class Occasion {
   kMasks,       // people pass by, and masks say where
   kAlpha,       // what is not of the subject is transparent
   kRobust,      // people pass by
+  kDepth,       // few photographs: what alone they leave open, sparse points say
   kHdr,         // radiance in EXR files, with much more light than white
 };
 
@@ -29,6 +30,9 @@ Occasion OccasionFromName(const std::string& name);
 std::string OccasionNames();
 
 Scene SceneOf(Occasion occasion);
+
+// How many photographs are taken, unless somebody says otherwise.
+int UsualViews(Occasion occasion);
 
 // How one photograph of a sample is taken.
 struct Photography {

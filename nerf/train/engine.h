@@ -42,6 +42,7 @@ struct EngineParts {
   ProposalOptions proposal_options;
   LossOptions loss;
   std::optional<RobustOptions> robust;
+  std::optional<DepthOptions> depth;
   GradientScalingOptions gradient_scaling;
   // Of the networks' products in FusedEngine; LibTorchEngine is exact to float.
   kernels::Precision precision = kernels::Precision::kFloat;

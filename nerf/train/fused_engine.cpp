@@ -37,6 +37,7 @@ struct FusedEngine::Worker {
 FusedEngine::FusedEngine(EngineParts parts) : parts_(std::move(parts)), forward_(parts_) {
   pixel_model_.loss = parts_.loss;
   pixel_model_.robust = parts_.robust;
+  pixel_model_.depth = parts_.depth;
   if (parts_.exposure) pixel_model_.saturates = parts_.exposure->Saturates();
 }
 
@@ -62,7 +63,7 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
                            std::span<float> ray_error) const {
   FusedTile& tile = worker.tile;
   const std::int64_t count = tile.Rays(), size = tile.samples.Size();
-  if (!worker.pixels.Add(pixel_model_, batch, first, tile.rgb, ray_error)) {
+  if (!worker.pixels.Add(pixel_model_, batch, first, tile.rgb, tile.depth, ray_error)) {
     throw NonFiniteError(
         "the loss is not finite: " +
         DescribeNonFinite(tile, std::span(batch.rgb).subspan(3 * first, 3 * count), first));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "nerf/effects/background.h"
+#include "nerf/effects/depth.h"
 #include "nerf/effects/exposure.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
@@ -161,7 +162,12 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
     rgb = parts_.exposure->forward(
         rgb, TensorOf(batch.photograph, {batch.rays.Size()}, torch::kLong), target);
   }
-  const torch::Tensor loss = ColorLoss(rgb, target, parts_.loss, robust_);
+  torch::Tensor loss = ColorLoss(rgb, target, parts_.loss, robust_);
+  if (parts_.depth && !batch.distance.empty()) {
+    loss = loss + DepthLoss(out.pixels.depth,
+                            TensorOf(batch.distance, {batch.rays.Size()}, loss.scalar_type()),
+                            *parts_.depth);
+  }
   StepResult result;
   result.loss = loss.item<double>();
   if (!std::isfinite(result.loss)) {

@@ -112,6 +112,7 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   parts.loss = config.loss;
   parts.gradient_scaling = config.gradient_scaling;
   parts.robust = config.effects.robust;
+  parts.depth = config.effects.depth;
   parts.background = model.background;
   parts.exposure = model.exposure;
   parts.precision = PrecisionOf(config);

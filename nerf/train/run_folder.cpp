@@ -13,6 +13,7 @@ fs::path PosesPath(const fs::path& run) { return run / "transforms.json"; }
 fs::path ConfigPath(const fs::path& run) { return run / "config.json"; }
 fs::path MetricsPath(const fs::path& run) { return run / "metrics.jsonl"; }
 fs::path ColmapPath(const fs::path& run) { return run / "colmap"; }
+fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
 
 Checkpoint ReadRunCheckpoint(const fs::path& run) {
   if (!fs::exists(CheckpointPath(run))) {

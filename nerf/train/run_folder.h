@@ -13,11 +13,14 @@ namespace nerf {
 //   config.json      the configuration, every key
 //   metrics.jsonl    a line each validation
 //   colmap/          where poses were found from photographs
+//   sparse/          the input's sparse points, a COLMAP model, where distances are learned from
+//   them
 std::filesystem::path CheckpointPath(const std::filesystem::path& run);
 std::filesystem::path PosesPath(const std::filesystem::path& run);
 std::filesystem::path ConfigPath(const std::filesystem::path& run);
 std::filesystem::path MetricsPath(const std::filesystem::path& run);
 std::filesystem::path ColmapPath(const std::filesystem::path& run);
+std::filesystem::path SparsePath(const std::filesystem::path& run);
 
 // A trained run, to be looked at.
 struct OpenedRun {

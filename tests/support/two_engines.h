@@ -31,6 +31,7 @@ struct TwoEngines {
   GradientScalingOptions gradient_scaling;
   ColorModel color_model = ColorModel::kByDirection;
   std::optional<RobustOptions> robust;
+  std::optional<DepthOptions> depth;
   std::shared_ptr<Background> background;
   std::shared_ptr<Exposure> exposure;
 
@@ -83,6 +84,7 @@ struct TwoEngines {
     parts.loss = loss;
     parts.gradient_scaling = gradient_scaling;
     parts.robust = robust;
+    parts.depth = depth;
     parts.background = background;
     parts.exposure = exposure;
     libtorch = std::make_unique<LibTorchEngine>(parts);

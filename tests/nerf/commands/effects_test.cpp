@@ -66,13 +66,14 @@ test::ScratchFolder* EffectsCommands::folder_ = nullptr;
 TEST_F(EffectsCommands, InspectPrintsAVerdictForEachEffectWithItsEvidence) {
   const auto table = RunNerf("inspect " + Path("exposure/truth/sparse"));
   EXPECT_EQ(table.exit_status, 0);
-  for (const char* effect : {"alpha", "hdr", "masks", "view", "background", "exposure", "robust"}) {
+  for (const char* effect :
+       {"alpha", "hdr", "masks", "view", "background", "exposure", "robust", "depth"}) {
     EXPECT_THAT(table.output, HasSubstr(effect));
   }
   EXPECT_THAT(table.output, HasSubstr("stops"));
   const auto json = RunNerf("inspect --json " + Path("exposure/truth/sparse"));
   const auto root = nlohmann::json::parse(json.output);
-  EXPECT_EQ(root.at("verdicts").size(), 7u);
+  EXPECT_EQ(root.at("verdicts").size(), 8u);
   EXPECT_EQ(root.at("exposure_stops").size(), 17u);
 }
 
@@ -82,7 +83,7 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   EXPECT_THAT(run.output, HasSubstr("what the capture calls for"));
   EXPECT_FALSE(Json("auto/config.json").at("effects").at("exposure").is_null());
   EXPECT_TRUE(Json("auto/config.json").at("effects").at("masks").is_null());
-  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 7u);
+  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 8u);
 
   const auto eval = RunNerf("eval " + Path("auto"));
   EXPECT_THAT(eval.output, HasSubstr("photograph's exposure, fitted"));

@@ -22,7 +22,7 @@ using sample::Occasion;
 sample::SampleOptions Small(Occasion occasion) {
   sample::SampleOptions options;
   options.occasion = occasion;
-  options.views = 36;
+  options.views = sample::UsualViews(occasion);
   options.width = 240;
   options.height = 180;
   options.samples_per_pixel = 4;
@@ -66,6 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Inspect, EachOccasion,
                                          Case{Occasion::kMasks, "Masks", "masks"},
                                          Case{Occasion::kAlpha, "Alpha", "alpha"},
                                          Case{Occasion::kRobust, "Robust", "robust"},
+                                         Case{Occasion::kDepth, "Depth", "depth"},
                                          Case{Occasion::kHdr, "Hdr", "hdr"}),
                          NameOf);
 

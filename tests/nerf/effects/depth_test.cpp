@@ -1,0 +1,152 @@
+#include "nerf/effects/depth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "nerf/data/camera.h"
+#include "nerf/data/image_io.h"
+#include "nerf/data/pixel_sampler.h"
+#include "nerf/sample/sample_folder.h"
+#include "sfm/colmap_model.h"
+#include "tests/support/analytic_capture.h"
+#include "tests/support/central_differences.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/tiny_training.h"
+#include "tests/support/two_engines.h"
+
+namespace nerf {
+namespace {
+
+// A capture of few photographs: every third is one to judge by.
+struct FewPhotographs {
+  test::ScratchFolder folder;
+  sfm::PosedImages sparse;
+  sfm::SceneNormalization normalized_from_world;
+  Dataset data;
+
+  FewPhotographs() {
+    sample::SampleOptions options;
+    options.occasion = sample::Occasion::kDepth;
+    options.views = 9;
+    options.width = 64;
+    options.height = 48;
+    options.samples_per_pixel = 4;
+    sample::WriteSample(folder.path(), options);
+    sparse = sfm::ReadColmapModel(folder.path() / "truth/sparse", folder.path() / "images");
+    for (std::size_t i = 0; i < sparse.images.size(); ++i) {
+      sparse.images[i].split = i % 3 == 1 ? sfm::Split::kValidation : sfm::Split::kTrain;
+    }
+    normalized_from_world = sfm::NormalizeScene(sparse);
+    data = LoadDataset(sparse, {}, {}, normalized_from_world);
+    AddSeenPoints(sparse, normalized_from_world, data);
+  }
+};
+
+// Rays of both engines with known distances, but for every other one.
+test::TwoEngines WithDistances(const std::optional<DepthOptions>& depth) {
+  test::TwoEngines e;
+  e.depth = depth;
+  e.Make(50);
+  for (int r = 0; r < 50; ++r) {
+    e.batch.distance.push_back(r % 2 ? 0.0f : 1.0f + 0.5f * std::sin(static_cast<float>(r)));
+  }
+  return e;
+}
+
+TEST(DepthLoss, IsHubersOfTheRelativeError) {
+  const DepthOptions options = {0.1, 2.0, 0.1};
+  EXPECT_EQ(CostOfDepth(3, 3, options).value, 0);
+  EXPECT_NEAR(CostOfDepth(3.15, 3, options).value, 0.5 * 0.05 * 0.05 / 0.1, 1e-12);
+  EXPECT_NEAR(CostOfDepth(0, 3, options).value, 1 - 0.05, 1e-12);
+  // Its derivative.
+  for (const double distance : {0.0, 2.0, 2.9, 3.1, 5.0}) {
+    const double h = 1e-6, above = CostOfDepth(distance + h, 3, options).value,
+                 below = CostOfDepth(distance - h, 3, options).value;
+    EXPECT_NEAR(CostOfDepth(distance, 3, options).derivative, (above - below) / (2 * h), 1e-6);
+  }
+  // Over all rays, those without a distance among them.
+  const torch::Tensor loss = DepthLoss(torch::tensor({3.15, 7.0}, torch::kDouble),
+                                       torch::tensor({3.0, 0.0}, torch::kDouble), options);
+  EXPECT_NEAR(loss.item<double>(), 2 * CostOfDepth(3.15, 3, options).value / 2, 1e-12);
+}
+
+TEST(DepthLoss, GradientsMatchCentralDifferencesAndAreFiniteWithoutATarget) {
+  const torch::Tensor target = torch::tensor({0.0, 1.0, 2.0, 0.5, 0.0}, torch::kDouble);
+  const torch::Tensor distance =
+      torch::tensor({0.0, 1.02, 0.0, 0.7, 3.0}, torch::kDouble).requires_grad_(true);
+  test::ExpectGradientMatchesCentralDifferences([&] { return DepthLoss(distance, target, {}); },
+                                                distance, 1e-6, 1e-7);
+  EXPECT_EQ(distance.grad()[0].item<double>(), 0);
+  EXPECT_EQ(distance.grad()[4].item<double>(), 0);
+}
+
+TEST(DepthLoss, MeansTheSameInBothEngines) {
+  for (const double weight : {0.1, 3.0}) {
+    test::TwoEngines e = WithDistances(DepthOptions{0.1, weight, 0.05});
+    e.ExpectTheSame();
+  }
+}
+
+TEST(DepthLoss, ChangesNothingAtTheWeightZero) {
+  const test::TwoEngines off = WithDistances({}), zero = WithDistances(DepthOptions{0.1, 0, 0.05}),
+                         on = WithDistances(DepthOptions{0.1, 1, 0.05});
+  for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
+    const double loss = (off.*engine)->AccumulateGradients(off.batch).loss;
+    EXPECT_EQ((zero.*engine)->AccumulateGradients(zero.batch).loss, loss);
+    EXPECT_GT((on.*engine)->AccumulateGradients(on.batch).loss, loss);
+  }
+}
+
+TEST(SeenPoints, StandAsFarAwayAsWhatTheirPixelsShow) {
+  const FewPhotographs few;
+  std::size_t points = 0, far_off = 0;
+  for (const View& view : few.data.train) {
+    const std::string stem = view.name.substr(0, view.name.find('.'));
+    const Image depth =
+        ReadImage(few.folder.path() / "truth" / (stem + ".depth.exr"), /*upright=*/false);
+    for (const SeenPoint& point : view.points) {
+      const auto x = static_cast<int>(point.pixel % view.camera.width),
+                 y = static_cast<int>(point.pixel / view.camera.width);
+      const double truth = static_cast<double>(*depth.At(x, y)) * few.normalized_from_world.scale *
+                           // Depth maps are along the optical axis.
+                           1 / DirectionFromPixel(view.camera, {x + 0.5, y + 0.5})->z();
+      ++points;
+      // A pixel is large here: at an edge its middle shows something else.
+      far_off += std::fabs(static_cast<double>(point.distance) / truth - 1) > 0.05;
+    }
+  }
+  EXPECT_GT(points, 1000u);
+  EXPECT_LT(far_off, points / 10);
+  for (const View& view : few.data.validation) EXPECT_TRUE(view.points.empty());
+}
+
+TEST(SeenPoints, AreDrawnAsOftenAsAskedFor) {
+  const FewPhotographs few;
+  const TargetBatch batch = PixelSampler(few.data.train, 0, 0.25).Sample(4000, 3, 7);
+  ASSERT_EQ(batch.distance.size(), 4000u);
+  const auto known = 4000 - std::ranges::count(batch.distance, 0.0f);
+  EXPECT_NEAR(static_cast<double>(known), 1000, 140);  // five standard deviations
+  // Without a share of theirs, what is drawn is the same to the bit.
+  Dataset plain = few.data;
+  for (View& view : plain.train) view.points.clear();
+  const TargetBatch with = PixelSampler(few.data.train).Sample(500, 3, 7),
+                    without = PixelSampler(plain.train).Sample(500, 3, 7);
+  EXPECT_EQ(with.rays.direction, without.rays.direction);
+  EXPECT_TRUE(with.distance.empty());
+}
+
+TEST(SeenPoints, AreWorthADecibelAndMoreWherePhotographsAreFew) {
+  const FewPhotographs few;
+  const SceneFacts scene = FactsOf(few.data, few.normalized_from_world);
+  const auto psnr = [&](const std::string& effect) {
+    const Config config = test::TinyConfig(600, {"effects.depth=" + effect});
+    return test::PsnrOver(test::Trained(config, scene, few.data), few.data.validation);
+  };
+  const double without = psnr("null"), with = psnr("{}");
+  EXPECT_GT(with, without + 1);
+}
+
+}  // namespace
+}  // namespace nerf
