@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "nerf/data/camera.h"
 #include "nerf/data/image_io.h"
 #include "nerf/data/pixel_sampler.h"
 #include "nerf/sample/sample_folder.h"
@@ -109,9 +108,7 @@ TEST(SeenPoints, StandAsFarAwayAsWhatTheirPixelsShow) {
     for (const SeenPoint& point : view.points) {
       const auto x = static_cast<int>(point.pixel % view.camera.width),
                  y = static_cast<int>(point.pixel / view.camera.width);
-      const double truth = static_cast<double>(*depth.At(x, y)) * few.normalized_from_world.scale *
-                           // Depth maps are along the optical axis.
-                           1 / DirectionFromPixel(view.camera, {x + 0.5, y + 0.5})->z();
+      const double truth = static_cast<double>(*depth.At(x, y)) * few.normalized_from_world.scale;
       ++points;
       // A pixel is large here: at an edge its middle shows something else.
       far_off += std::fabs(static_cast<double>(point.distance) / truth - 1) > 0.05;
