@@ -20,6 +20,15 @@ Image WithoutAlpha(const Image& image) {
   return rgb;
 }
 
+bool IsCameraRaw(const OIIO::ImageInput& input) {
+  return input.format_name() == std::string("raw");
+}
+
+bool IsCameraRaw(const std::filesystem::path& file) {
+  const auto input = OIIO::ImageInput::open(file.string());
+  return input && IsCameraRaw(*input);
+}
+
 }  // namespace
 
 bool StoresLinearLight(const std::filesystem::path& file) {
@@ -27,7 +36,12 @@ bool StoresLinearLight(const std::filesystem::path& file) {
   if (!input) return false;  // ReadImage says why
   const int bits = input->spec().get_int_attribute(
       "oiio:BitsPerSample", 8 * static_cast<int>(input->spec().format.size()));
-  return bits > 8 || input->format_name() == std::string("raw");
+  return bits > 8 || IsCameraRaw(*input);
+}
+
+bool StoresIntegers(const std::filesystem::path& file) {
+  const auto input = OIIO::ImageInput::open(file.string());
+  return !input || !input->spec().format.is_floating_point();
 }
 
 Image ReadLinearImage(const std::filesystem::path& file, InputEncoding encoding) {
@@ -35,7 +49,7 @@ Image ReadLinearImage(const std::filesystem::path& file, InputEncoding encoding)
   if (image.channels > 3) image = WithoutAlpha(image);
   const bool linear = encoding == InputEncoding::kLinear ||
                       (encoding == InputEncoding::kAuto && StoresLinearLight(file));
-  if (linear) image.encoding = ColorEncoding::kLinear;
+  if (linear && !IsCameraRaw(file)) image.encoding = ColorEncoding::kLinear;
   return image.encoding == ColorEncoding::kLinear ? image : ToLinear(image);
 }
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "nerf/parallel.h"
 #include "sfm/input_error.h"
@@ -13,16 +16,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kSaturated = 0.998f;  // of the largest value that a file can hold
-constexpr double kBlack = 1e-4;       // mean below which a photograph shows nothing
-constexpr double kAgrees = 3;         // residuals; beyond it an observation says nothing of albedo
-constexpr int kBlock = 4096;          // pixels a thread takes at a time
+constexpr float kSaturated = 0.998f;   // of the largest value of integers
+constexpr double kBlack = 1e-4;        // mean of integers below which a photograph shows nothing
+constexpr double kAgrees = 3;          // residuals; beyond it an observation says nothing of albedo
+constexpr std::int64_t kBlock = 4096;  // pixels a thread takes at a time
+constexpr std::size_t kPixelsOfEncoding = 20'000;  // that tell sRGB from linear
 
-// The observations of the pixels inside the mask.
+// The observations of some pixels.
 struct Observations {
-  std::vector<int> pixels;    // index y * width + x
-  std::vector<float> values;  // [pixel][light][channel], over the light's intensity
-  std::vector<char> known;    // [pixel][light]: not saturated
+  std::span<const int> pixels;  // index y * width + x
+  std::vector<float> values;    // [pixel][light][channel], over the light's intensity
+  std::vector<char> known;      // [pixel][light]: not saturated
+
+  static constexpr std::size_t kBytes = 3 * sizeof(float) + sizeof(char);  // a pixel and light
 };
 
 std::vector<int> PixelsInside(const OlatCapture& capture) {
@@ -43,43 +49,54 @@ std::vector<int> PixelsInside(const OlatCapture& capture) {
   return pixels;
 }
 
-void CheckExposure(const std::filesystem::path& file, double mean, double saturated) {
-  if (!(mean > kBlack)) {
+// Whether a channel of a pixel may have been brighter than its file can say.
+bool IsSaturated(const float* pixel) {
+  return std::max({pixel[0], pixel[1], pixel[2]}) >= kSaturated;
+}
+
+void CheckExposure(const std::filesystem::path& file, const Image& image, bool integers,
+                   std::span<const int> pixels) {
+  double sum = 0;
+  double saturated = 0;
+  for (const int at : pixels) {
+    const float* pixel = &image.pixels[static_cast<std::size_t>(at) * 3];
+    sum += (pixel[0] + pixel[1] + pixel[2]) / 3;
+    saturated += integers && IsSaturated(pixel) ? 1 : 0;
+  }
+  const auto count = static_cast<double>(pixels.size());
+  // Floats may be of any unit, however small.
+  if (!(sum / count > (integers ? kBlack : 0))) {
     throw sfm::InputError("{}: is black where the subject is; leave it out with its light",
                           file.string());
   }
-  if (saturated > 0.5) {
+  if (saturated / count > 0.5) {
     throw sfm::InputError("{}: {:.0f} % of the subject is saturated; expose it less", file.string(),
-                          100 * saturated);
+                          100 * saturated / count);
   }
 }
 
-Observations ReadObservations(const OlatCapture& capture, InputEncoding encoding) {
-  Observations seen{PixelsInside(capture), {}, {}};
+// Reads all images for the observations of `pixels`.
+//   check  pixels on which an image must show something; none: it is known to
+Observations ReadObservations(const OlatCapture& capture, InputEncoding encoding,
+                              std::span<const int> pixels, std::span<const int> check) {
   const std::size_t lights = capture.lights.size();
-  seen.values.resize(seen.pixels.size() * lights * 3);
-  seen.known.resize(seen.pixels.size() * lights);
+  Observations seen{pixels, std::vector<float>(pixels.size() * lights * 3),
+                    std::vector<char>(pixels.size() * lights)};
   sfm::ProgressLine progress("reading", static_cast<std::int64_t>(lights));
   for (std::size_t i = 0; i < lights; ++i) {
-    progress.Update(static_cast<std::int64_t>(i), capture.images[i].filename().string());
-    const Image image = ReadLinearImage(capture.images[i], encoding);
+    const auto& file = capture.images[i];
+    progress.Update(static_cast<std::int64_t>(i), file.filename().string());
+    const Image image = ReadLinearImage(file, encoding);
+    const bool integers = StoresIntegers(file);
+    if (!check.empty()) CheckExposure(file, image, integers, check);
     const Color intensity = capture.lights[i].irradiance / std::numbers::pi;
-    double sum = 0;
-    double saturated = 0;
-    for (std::size_t p = 0; p < seen.pixels.size(); ++p) {
-      const float* pixel = &image.pixels[static_cast<std::size_t>(seen.pixels[p]) * 3];
-      // Files of floats have no largest value: what is above 1 there was measured.
-      const float highest = std::max({pixel[0], pixel[1], pixel[2]});
-      const bool known = !(highest >= kSaturated && highest <= 1);
-      saturated += known ? 0 : 1;
-      seen.known[p * lights + i] = known;
+    for (std::size_t p = 0; p < pixels.size(); ++p) {
+      const float* pixel = &image.pixels[static_cast<std::size_t>(pixels[p]) * 3];
+      seen.known[p * lights + i] = !(integers && IsSaturated(pixel));
       for (int c = 0; c < 3; ++c) {
-        sum += pixel[c];
         seen.values[(p * lights + i) * 3 + c] = pixel[c] / static_cast<float>(intensity[c]);
       }
     }
-    const auto count = static_cast<double>(seen.pixels.size());
-    CheckExposure(capture.images[i], sum / (3 * count), saturated / count);
   }
   return seen;
 }
@@ -122,42 +139,38 @@ double Median(std::vector<float> values) {
   return *middle;
 }
 
-}  // namespace
-
-PhotometricMaps SolvePhotometricStereo(const OlatCapture& capture, InputEncoding encoding,
-                                       const StereoOptions& options) {
-  const PhotometricSolver solver(capture.lights, options);
-  const Observations seen = ReadObservations(capture, encoding);
-  const auto linear = ColorEncoding::kLinear;
-  PhotometricMaps maps{Image(capture.width, capture.height, 3, linear),
-                       Image(capture.width, capture.height, 3, linear),
-                       Image(capture.width, capture.height, 1, linear)};
-  const auto count = static_cast<std::int64_t>(seen.pixels.size());
+// Solves some pixels into the maps, several at a time.
+//   solved  of all pixels before these, for the progress line
+void SolvePixels(const PhotometricSolver& solver, const OlatCapture& capture,
+                 const Observations& seen, std::int64_t solved, sfm::ProgressLine& progress,
+                 PhotometricMaps& maps) {
+  const auto count = std::ssize(seen.pixels);
   std::vector<char> robust(seen.pixels.size(), 0);
-  sfm::ProgressLine progress("solving", count);
   for (std::int64_t begin = 0; begin < count; begin += kBlock * NumThreads()) {
-    progress.Update(begin);
+    progress.Update(solved + begin);
     const std::int64_t block = std::min<std::int64_t>(count - begin, kBlock * NumThreads());
     ParallelFor(block, 64, [&](std::int64_t first, std::int64_t last) {
       std::vector<double> b(capture.lights.size());
       for (auto p = static_cast<std::size_t>(begin + first);
            p < static_cast<std::size_t>(begin + last); ++p) {
-        const Solved solved = SolvePixel(solver, capture, seen, p, b);
-        if (!(solved.surface.albedo > 0)) continue;
+        const Solved pixel = SolvePixel(solver, capture, seen, p, b);
+        if (!(pixel.surface.albedo > 0)) continue;
         const auto at = static_cast<std::size_t>(seen.pixels[p]);
         for (int c = 0; c < 3; ++c) {
-          maps.normal.pixels[at * 3 + c] = static_cast<float>(solved.surface.normal[c]);
-          maps.albedo.pixels[at * 3 + c] = static_cast<float>(solved.albedo[c]);
+          maps.normal.pixels[at * 3 + c] = static_cast<float>(pixel.surface.normal[c]);
+          maps.albedo.pixels[at * 3 + c] = static_cast<float>(pixel.albedo[c]);
         }
-        maps.residual.pixels[at] = static_cast<float>(solved.surface.residual);
-        robust[p] = solved.surface.robust;
+        maps.residual.pixels[at] = static_cast<float>(pixel.surface.residual);
+        robust[p] = pixel.surface.robust;
       }
     });
   }
-  maps.pixels = static_cast<int>(count);
-  maps.robust_pixels = static_cast<int>(std::ranges::count(robust, 1));
+  maps.robust_pixels += static_cast<int>(std::ranges::count(robust, 1));
+}
+
+void Summarise(std::span<const int> pixels, PhotometricMaps& maps) {
   std::vector<float> residuals;
-  for (const int at : seen.pixels) {
+  for (const int at : pixels) {
     const float* n = &maps.normal.pixels[static_cast<std::size_t>(at) * 3];
     if (n[0] == 0 && n[1] == 0 && n[2] == 0) {
       ++maps.unknown_pixels;
@@ -165,8 +178,40 @@ PhotometricMaps SolvePhotometricStereo(const OlatCapture& capture, InputEncoding
       residuals.push_back(maps.residual.pixels[static_cast<std::size_t>(at)]);
     }
   }
+  maps.pixels = static_cast<int>(pixels.size());
   maps.median_residual = Median(std::move(residuals));
+}
+
+// Of `pixels`, or of about `most` of them, evenly.
+PhotometricMaps SolveSome(const OlatCapture& capture, InputEncoding encoding,
+                          const StereoOptions& options, std::int64_t memory, std::size_t most) {
+  const PhotometricSolver solver(capture.lights, options);
+  const std::vector<int> inside = PixelsInside(capture);
+  std::vector<int> pixels;
+  const std::size_t step = std::max<std::size_t>(1, inside.size() / most);
+  for (std::size_t i = 0; i < inside.size(); i += step) pixels.push_back(inside[i]);
+  const auto linear = ColorEncoding::kLinear;
+  PhotometricMaps maps{Image(capture.width, capture.height, 3, linear),
+                       Image(capture.width, capture.height, 3, linear),
+                       Image(capture.width, capture.height, 1, linear)};
+  const auto bytes = static_cast<std::int64_t>(Observations::kBytes * capture.lights.size());
+  const auto at_once = static_cast<std::size_t>(std::max<std::int64_t>(1, memory / bytes));
+  sfm::ProgressLine progress("solving", std::ssize(pixels));
+  for (std::size_t begin = 0; begin < pixels.size(); begin += at_once) {
+    const auto part = std::span(pixels).subspan(begin, std::min(at_once, pixels.size() - begin));
+    const auto check = begin == 0 ? std::span<const int>(inside) : std::span<const int>();
+    const Observations seen = ReadObservations(capture, encoding, part, check);
+    SolvePixels(solver, capture, seen, static_cast<std::int64_t>(begin), progress, maps);
+  }
+  Summarise(pixels, maps);
   return maps;
+}
+
+}  // namespace
+
+PhotometricMaps SolvePhotometricStereo(const OlatCapture& capture, InputEncoding encoding,
+                                       const StereoOptions& options, std::int64_t memory) {
+  return SolveSome(capture, encoding, options, memory, std::numeric_limits<std::size_t>::max());
 }
 
 InputEncoding EncodingByResidual(const OlatCapture& capture) {
@@ -174,7 +219,8 @@ InputEncoding EncodingByResidual(const OlatCapture& capture) {
   StereoOptions plain;
   plain.method = StereoMethod::kLeastSquares;
   const auto residual = [&](InputEncoding encoding) {
-    return SolvePhotometricStereo(capture, encoding, plain).median_residual;
+    return SolveSome(capture, encoding, plain, kObservationBytes, kPixelsOfEncoding)
+        .median_residual;
   };
   return residual(InputEncoding::kSrgb) <= residual(InputEncoding::kLinear)
              ? InputEncoding::kSrgb

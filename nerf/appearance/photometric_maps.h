@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,21 +18,27 @@ struct PhotometricMaps {
   Image residual;  // 1 channel, relative to the albedo
   int pixels = 0;  // inside the mask
   int robust_pixels = 0;   // of them, those that the robust method solved
-  int unknown_pixels = 0;  // of them, those without three lit observations
+  int unknown_pixels = 0;  // of them, those of which nothing could be said
   double median_residual = 0;
 };
 
+// Bytes for observations where nobody says otherwise.
+inline constexpr std::int64_t kObservationBytes = std::int64_t{1} << 30;
+
 // Solves a capture pixel by pixel: the normal from the mean of the channels, the albedo of each
 // channel by least squares on the shading max(0, l . n) of the observations that agree with it.
-// Holds the pixels inside the mask of all images as floats. Shows progress.
-// Throws sfm::InputError: too few or coplanar lights; nothing inside the mask; an image that is
-// black, or half saturated, there.
+//   memory  bytes for the observations of pixels, of which each takes 13 a light; where they are
+//           more, so many pixels at a time are solved as fit, and the images are read again for
+//           each such part. The maps and an image being read come beside them.
+// Shows progress. Throws sfm::InputError: too few or coplanar lights; nothing inside the mask; an
+// image that is black there, or half saturated (of integers: floats have no largest value).
 PhotometricMaps SolvePhotometricStereo(const OlatCapture& capture, InputEncoding encoding,
-                                       const StereoOptions& options);
+                                       const StereoOptions& options,
+                                       std::int64_t memory = kObservationBytes);
 
 // What the numbers of a capture's 8-bit files mean, where nobody says: the encoding, sRGB or
-// linear, in which least squares explain them better. Other files are linear, and so is the answer
-// then. Throws as SolvePhotometricStereo does.
+// linear, in which least squares explain them better, on some of the pixels. Other files are
+// linear, and so is the answer then. Throws as SolvePhotometricStereo does.
 InputEncoding EncodingByResidual(const OlatCapture& capture);
 
 // The surface under one directional light, linear: albedo max(0, l . n) E / pi.

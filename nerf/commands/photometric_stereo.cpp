@@ -1,6 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "nerf/commands/input_encoding.h"
 #include "nerf/commands/threads.h"
 #include "nerf/stopwatch.h"
+#include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
@@ -24,11 +26,18 @@ struct StereoArguments {
   std::string output;
   appearance::OlatOptions capture;
   appearance::StereoOptions stereo;
+  int memory_mb = static_cast<int>(appearance::kObservationBytes >> 20);
   int threads = 0;
+
+  void Check() const {
+    stereo.Check();
+    if (memory_mb < 1) throw sfm::InputError("--memory-mb is {}: choose 1 or more", memory_mb);
+  }
 };
 
 void RunPhotometricStereo(const StereoArguments& arguments) {
   const Stopwatch watch;
+  arguments.Check();
   UseThreads(arguments.threads);
   const auto capture = appearance::FindOlatCapture(arguments.folder, arguments.capture);
   const std::filesystem::path folder =
@@ -37,12 +46,13 @@ void RunPhotometricStereo(const StereoArguments& arguments) {
   const InputEncoding encoding = arguments.capture.encoding == InputEncoding::kAuto
                                      ? appearance::EncodingByResidual(capture)
                                      : arguments.capture.encoding;
-  const auto maps = appearance::SolvePhotometricStereo(capture, encoding, arguments.stereo);
+  const auto maps = appearance::SolvePhotometricStereo(capture, encoding, arguments.stereo,
+                                                       std::int64_t{arguments.memory_mb} << 20);
   appearance::WritePhotometricFolder(folder, maps);
   const double share = 100.0 / std::max(1, maps.pixels);
   fmt::print(
       "{}: {} images, taken as {}, lights from {}\n"
-      "{} pixels: {:.1f} % by least squares, {:.1f} % robust, {:.1f} % too dark to say\n"
+      "{} pixels: {:.1f} % by least squares, {:.1f} % robust, {:.1f} % without an answer\n"
       "residual {:.2f} % of the albedo in the median; {:.1f} s\n"
       "normals, albedo, residual, depth.ply and relit.png are in {}\n",
       capture.name, capture.images.size(), encoding == InputEncoding::kSrgb ? "sRGB" : "linear",
@@ -91,6 +101,11 @@ void AddPhotometricStereoCommand(CLI::App& app) {
   command
       ->add_option("--dark", arguments->stereo.dark,
                    "share of a pixel's brightest observation below which it lies in shadow")
+      ->capture_default_str();
+  command
+      ->add_option("--memory-mb", arguments->memory_mb,
+                   "for the observations of pixels; where they are more, images are read again "
+                   "for each part of them")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(

@@ -9,6 +9,7 @@
 #include "nerf/appearance/light_file.h"
 #include "nerf/appearance/photometric_folder.h"
 #include "nerf/data/image_io.h"
+#include "tests/nerf/appearance/tiny_dng.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/lit_sphere.h"
 #include "tests/support/scratch_folder.h"
@@ -32,7 +33,9 @@ Vector3d NormalAt(int x, int y) {
 }
 
 // A coloured matt sphere under lights of different colours, as files.
-void WriteSphereCapture(const std::filesystem::path& folder, const char* ending = ".exr") {
+//   scale  of all values
+void WriteSphereCapture(const std::filesystem::path& folder, const char* ending = ".exr",
+                        float scale = 1) {
   std::vector<DirectionalLight> lights = test::RingOfLights(12, 45);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     lights[i].irradiance *= Color(1.0, 0.9, 0.8) * (i % 2 == 0 ? 1.0 : 0.5);
@@ -47,7 +50,7 @@ void WriteSphereCapture(const std::filesystem::path& folder, const char* ending 
         std::fill_n(mask.At(x, y), 3, 1.0f);
         const Color b = kAlbedo * lights[i].irradiance / std::numbers::pi *
                         std::max(0.0, n.dot(lights[i].to_light));
-        for (int c = 0; c < 3; ++c) photo.At(x, y)[c] = static_cast<float>(b[c]);
+        for (int c = 0; c < 3; ++c) photo.At(x, y)[c] = scale * static_cast<float>(b[c]);
       }
     }
     WriteImage(folder / (std::to_string(i) + ending), photo);
@@ -129,6 +132,55 @@ TEST(PhotometricMaps, RefuseBlackAndSaturatedImagesByName) {
   std::ranges::fill(flat.pixels, 0.0f);
   WriteImage(scratch.path() / "mask.png", flat);
   EXPECT_THAT(error(), AllOf(HasSubstr("mask.png"), HasSubstr("black")));
+}
+
+TEST(PhotometricMaps, InLittleMemoryAreTheSameInMoreParts) {
+  const test::ScratchFolder scratch;
+  WriteSphereCapture(scratch.path());
+  const OlatCapture capture = FindOlatCapture(scratch.path(), {});
+  const auto whole = SolvePhotometricStereo(capture, InputEncoding::kAuto, {});
+  const auto parts = SolvePhotometricStereo(capture, InputEncoding::kAuto, {}, 12 * 13 * 1000);
+  EXPECT_EQ(parts.normal.pixels, whole.normal.pixels);
+  EXPECT_EQ(parts.albedo.pixels, whole.albedo.pixels);
+  EXPECT_EQ(parts.residual.pixels, whole.residual.pixels);
+  EXPECT_EQ(parts.pixels, whole.pixels);
+  EXPECT_EQ(parts.robust_pixels, whole.robust_pixels);
+  EXPECT_EQ(parts.median_residual, whole.median_residual);
+}
+
+// Integers have a lowest and a highest value, floats a unit that nobody knows.
+TEST(PhotometricMaps, OfFloatsMayBeInAnyUnit) {
+  for (const float scale : {1e-6f, 1.0f / 0.7f, 1e4f}) {
+    const test::ScratchFolder scratch;
+    WriteSphereCapture(scratch.path(), ".exr", scale);
+    StereoOptions options;
+    options.method = StereoMethod::kLeastSquares;
+    const auto maps =
+        SolvePhotometricStereo(FindOlatCapture(scratch.path(), {}), InputEncoding::kAuto, options);
+    // Its brightest red is 1 in the second: left out as saturated, it would be another normal's.
+    const float* albedo = maps.albedo.At(kSize / 2, kSize / 2);
+    EXPECT_NEAR(albedo[0] / scale, kAlbedo[0], 1e-4) << scale;
+    EXPECT_EQ(maps.unknown_pixels, 0) << scale;
+  }
+}
+
+// A camera's raw files, which are linear light under whatever curve their decoder puts on it.
+TEST(PhotometricMaps, OfCameraRawAreThoseOfItsSensor) {
+  const test::ScratchFolder scratch;
+  const auto lights = test::RingOfLights(12, 45);
+  WriteLights(scratch.path() / "lights.txt", lights);
+  const Vector3d normal = Vector3d(0.25, -0.15, 0.9).normalized();
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const double b = 0.8 * std::max(0.0, normal.dot(lights[i].to_light));
+    scratch.Write(std::to_string(i) + ".dng", test::TinyDng(32, 32, [&](int, int) {
+                    return static_cast<std::uint16_t>(65535 * b);
+                  }));
+  }
+  const OlatCapture capture = FindOlatCapture(scratch.path(), {});
+  EXPECT_EQ(EncodingByResidual(capture), InputEncoding::kLinear);
+  const auto maps = SolvePhotometricStereo(capture, InputEncoding::kAuto, {});
+  const float* found = maps.normal.At(16, 16);
+  EXPECT_LT(test::DegreesBetween(Vector3d(found[0], found[1], found[2]), normal), 0.1);
 }
 
 OlatCapture Cat() { return FindOlatCapture(std::string(NERF_TEST_DATA) + "/photometric", {}); }
