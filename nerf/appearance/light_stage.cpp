@@ -30,6 +30,11 @@ constexpr double kMillimetersAcross = 12;  // of the marble ball: small, so that
 constexpr int kPlaces = 4;                 // in a pixel
 constexpr int kPathsOfBounces = 16;        // in each place, under one light
 
+// The file by which a folder is known as a capture of ours.
+constexpr const char* kMark = "light_stage.txt";
+constexpr const char* kMarkText =
+    "A capture of nerf sample --light-stage: the next one here replaces its images and lights.\n";
+
 Surface Ball(double x, std::shared_ptr<const Brdf> brdf) {
   return {sample::Sphere{{x, kRadius, 0}, kRadius}, std::move(brdf)};
 }
@@ -44,8 +49,19 @@ Surface MarbleBall(double x) {
 
 std::string ImageName(int light) { return fmt::format("light_{:04d}.exr", light); }
 
-// A folder that holds pictures of somebody's must not be mixed with ours.
-void RefuseForeignImages(const fs::path& folder) {
+// A folder that holds files of somebody's must not be mixed with ours: ours are those beside the
+// mark that WriteLightStage leaves before anything else, so that a capture that was stopped is
+// known as well.
+void RefuseForeignContent(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) {
+    throw sfm::InputError("{} is a file: choose an empty or a new folder", folder.string());
+  }
+  if (!fs::exists(folder / kMark) && !fs::is_empty(folder)) {
+    throw sfm::InputError(
+        "{} holds {}, and no light-stage capture: choose an empty or a new folder", folder.string(),
+        fs::directory_iterator(folder)->path().filename().string());
+  }
   static const std::regex ours(R"(light_\d{4}\.exr)");
   for (const fs::path& file : sfm::ImageFilesIn(folder)) {
     if (std::regex_match(file.filename().string(), ours)) continue;
@@ -134,8 +150,9 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   }
   std::shared_ptr<const Brdf> measured;
   if (!options.merl.empty()) measured = std::make_shared<MerlBrdf>(MerlBrdf::Read(options.merl));
-  RefuseForeignImages(folder);
+  RefuseForeignContent(folder);
   sfm::MakeOutputFolder(folder);
+  sfm::WriteFileAtomically(folder / kMark, kMarkText);
   sfm::RemoveAll(folder / "lights.txt");
   sfm::RemoveAll(folder / "truth" / "direct.exr");
   for (const fs::path& file : sfm::ImageFilesIn(folder)) sfm::RemoveAll(file);

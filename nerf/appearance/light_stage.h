@@ -58,11 +58,12 @@ SceneRendering PhotographUnder(
 //   light_0000.exr, ...   linear, one light each
 //   lights.txt            their directions (light_file.h)
 //   truth/direct.exr      the subject directly under the environment, where one is given
+//   light_stage.txt       the mark by which the folder is known as such a capture
 // An earlier capture in the folder is replaced, and what it had more of is removed.
 //   returns  false where keep_on ended it; the light file is written last, so that half a capture
 //            is none
-// Throws sfm::InputError: options out of range, the folder cannot be written, or it holds images
-// that are no such capture's (nothing in it is touched then).
+// Throws sfm::InputError: options out of range, the folder cannot be written, or it holds anything
+// without that mark, or images that are no such capture's (nothing in it is touched then).
 bool WriteLightStage(const std::filesystem::path& folder, const LightStageOptions& options,
                      const std::function<bool()>& keep_on);
 
