@@ -100,7 +100,12 @@ fs::path WithItsName(const fs::path& folder) {
   return named ? path : without_slash(fs::absolute(folder).lexically_normal());
 }
 
-// The folder itself, or its one sub-folder with images that is no chrome ball's.
+// What photometric stereo or relighting wrote: pictures of the subject, but under no light alone.
+bool HoldsResults(const fs::path& folder) {
+  return fs::exists(folder / "normals.exr") || fs::exists(folder / "relit.exr");
+}
+
+// The folder itself, or its one sub-folder with images that is no chrome ball's and no result.
 fs::path FolderOfImages(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw sfm::InputError("{}: no such folder; give one with an image for each light",
@@ -110,6 +115,7 @@ fs::path FolderOfImages(const fs::path& folder) {
   std::vector<fs::path> subjects;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (!entry.is_directory() || entry.path().filename() == kChromeName) continue;
+    if (HoldsResults(entry.path())) continue;
     if (!PicturesIn(entry.path()).empty()) subjects.push_back(entry.path());
   }
   if (subjects.empty()) {
@@ -176,6 +182,7 @@ OlatCapture FindOlatCapture(const fs::path& given, const OlatOptions& options) {
   const fs::path folder = FolderOfImages(WithItsName(given));
   OlatCapture capture;
   capture.name = folder.filename().string();
+  capture.folder = given;
   Pictures pictures = FindPictures(folder);
   capture.images = std::move(pictures.images);
   capture.mask = std::move(pictures.mask);
@@ -191,9 +198,13 @@ OlatCapture FindOlatCapture(const fs::path& given, const OlatOptions& options) {
 
 void RefuseAmongImages(const OlatCapture& capture, const fs::path& output) {
   if (!fs::exists(output)) return;
-  if (!fs::equivalent(output, capture.images.front().parent_path())) return;
-  throw sfm::InputError("--output {}: holds the images of the capture; choose another folder",
-                        output.string());
+  std::vector<fs::path> taken = {capture.folder, capture.images.front().parent_path()};
+  if (capture.chrome) taken.push_back(*capture.chrome);
+  for (const fs::path& folder : taken) {
+    if (!fs::equivalent(output, folder)) continue;
+    throw sfm::InputError("--output {}: belongs to the capture; choose another folder",
+                          output.string());
+  }
 }
 
 std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, InputEncoding encoding) {

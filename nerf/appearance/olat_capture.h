@@ -13,6 +13,7 @@ namespace nerf::appearance {
 // Photographs of one subject by one camera, each under one light ("one light at a time").
 struct OlatCapture {
   std::string name;                           // of the subject
+  std::filesystem::path folder;               // in which it was looked for
   std::vector<std::filesystem::path> images;  // all of one size
   std::vector<DirectionalLight> lights;       // of each image
   std::string lights_from;                    // the file or folder that told the directions
@@ -29,16 +30,17 @@ struct OlatOptions {
 };
 
 // Finds a capture in a folder. The images stand in it, or in its one sub-folder that is no chrome
-// ball's. `lights.txt`, and the ball's folder `chrome` with a mask, are looked for in the images'
-// folder and the one above. An image with "mask" in its name is the mask. Images are taken in the
-// order of a list, NAME.txt beside the folder NAME, where there is one (a line an image, only the
-// file's name counts; the data sets of Washington and Harvard), else by name, numbers by value.
-// Throws sfm::InputError: no images, of several sizes, several subjects, no lights, or not as many
-// lights as images.
+// ball's and holds no results (normals.exr, relit.exr). `lights.txt`, and the ball's folder
+// `chrome` with a mask, are looked for in the images' folder and the one above. An image with
+// "mask" in its name is the mask. Images are taken in the order of a list, NAME.txt beside the
+// folder NAME, where there is one (a line an image, only the file's name counts; the data sets of
+// Washington and Harvard), else by name, numbers by value. Throws sfm::InputError: no images, of
+// several sizes, several subjects, no lights, or not as many lights as images.
 OlatCapture FindOlatCapture(const std::filesystem::path& folder, const OlatOptions& options);
 
-// Throws sfm::InputError where results would be written among a capture's images, and be taken for
-// more of them the next time.
+// Throws sfm::InputError where results would be written among a capture's images, its chrome
+// ball's, or into the folder in which they are looked for, and be taken for more of them the next
+// time.
 void RefuseAmongImages(const OlatCapture& capture, const std::filesystem::path& output);
 
 // The directions of the lights by the highlights on the capture's chrome ball.

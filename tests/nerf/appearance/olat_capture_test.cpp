@@ -146,6 +146,32 @@ TEST(OlatCapture, IsNoPlaceForItsResults) {
   }
 }
 
+// What stands beside the images is looked at in the next run too.
+TEST(OlatCapture, IsNoPlaceForItsResultsWhereItIsFoundInASubFolder) {
+  const test::ScratchFolder scratch;
+  for (const char* name : {"ph/cat/1.png", "ph/cat/2.png", "ph/cat/3.png", "ph/chrome/1.png"}) {
+    scratch.WriteImage(name, 8, 6);
+  }
+  scratch.Write("ph/lights.txt", kThreeLights);
+  const OlatCapture capture = FindOlatCapture(scratch.path() / "ph", {});
+  for (const char* output : {"ph", "ph/", "ph/cat", "ph/chrome"}) {
+    EXPECT_THAT(test::InputErrorOf([&] { RefuseAmongImages(capture, scratch.path() / output); }),
+                AllOf(HasSubstr("--output"), HasSubstr(output)));
+  }
+}
+
+TEST(OlatCapture, IsFoundAgainBesideItsResults) {
+  const test::ScratchFolder scratch;
+  for (const char* name : {"ph/cat/1.png", "ph/cat/2.png", "ph/cat/3.png"}) {
+    scratch.WriteImage(name, 8, 6);
+  }
+  scratch.Write("ph/lights.txt", kThreeLights);
+  for (const char* name : {"ph/cat-normals/normals.exr", "ph/cat-relit/relit.exr"}) {
+    scratch.WriteImage(name, 8, 6);
+  }
+  EXPECT_EQ(FindOlatCapture(scratch.path() / "ph", {}).name, "cat");
+}
+
 TEST(OlatCapture, ThatIsNoneIsRefusedWithWhatIsMissing) {
   const test::ScratchFolder scratch;
   const auto error = [&](const std::filesystem::path& folder) {
