@@ -115,6 +115,9 @@ SurfaceEstimate PhotometricSolver::LeastSquares(std::span<const double> observat
     if (observations[i] >= 0) equations.Add(lights_.row(i), observations[i]);
   }
   const Vector3d g = equations.Solve();
+  // What is seen faces the camera: another answer tells that the model does not fit, not where the
+  // surface faces, and mirroring it would be made up.
+  if (g.z() <= 0) return {};
   SurfaceEstimate estimate = EstimateFrom(g);
   double squares = 0;
   for (int i = 0; i < lights_.rows(); ++i) {
@@ -170,7 +173,7 @@ SurfaceEstimate PhotometricSolver::Robust(std::span<const double> observations) 
       equations.Add(lights_.row(i), observations[i], (1 - r * r) * (1 - r * r));
     }
     const Vector3d refitted = equations.Solve();
-    if (refitted.isZero(0)) break;
+    if (refitted.z() <= 0) break;  // none, or away from the camera
     g = refitted;
   }
   double sum = 0;

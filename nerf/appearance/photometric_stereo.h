@@ -48,7 +48,9 @@ class PhotometricSolver {
 
   // observations  brightness under each light, divided by its intensity; a negative value marks one
   //               that is not known (saturated)
-  // Leaves the normal at z and the albedo 0 where fewer than three observations are known and lit.
+  // Every normal faces the camera (z > 0), for what is seen does.
+  // Leaves the normal at z and the albedo 0 where nothing can be said: fewer than three
+  // observations are known and lit, or least squares alone turn the normal away from the camera.
   SurfaceEstimate Solve(std::span<const double> observations) const;
 
  private:

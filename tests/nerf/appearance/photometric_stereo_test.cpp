@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <random>
 
 #include "tests/support/input_error_of.h"
 #include "tests/support/lit_sphere.h"
@@ -121,6 +122,40 @@ TEST(PhotometricStereo, SaysNothingOfPixelsThatStayDark) {
        {StereoMethod::kLeastSquares, StereoMethod::kRobust, StereoMethod::kAuto}) {
     EXPECT_EQ(PhotometricSolver(lights, By(method)).Solve(dark).albedo, 0);
   }
+}
+
+// Whatever the photographs show, what is seen faces the camera; where nothing like it explains
+// them, nothing is said.
+TEST(PhotometricStereo, NeverTurnsANormalAwayFromTheCamera) {
+  const auto lights = test::RingOfLights(7, 75);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const StereoMethod method :
+       {StereoMethod::kLeastSquares, StereoMethod::kRobust, StereoMethod::kAuto}) {
+    const PhotometricSolver solver(lights, By(method));
+    int solved = 0;
+    for (int pixel = 0; pixel < 5000; ++pixel) {
+      std::vector<double> observations;
+      for (std::size_t i = 0; i < lights.size(); ++i) {
+        observations.push_back(std::pow(uniform(random), 2));
+      }
+      const SurfaceEstimate estimate = solver.Solve(observations);
+      ASSERT_GT(estimate.normal.z(), 0) << pixel;
+      solved += estimate.albedo > 0 ? 1 : 0;
+    }
+    EXPECT_GT(solved, 2500);
+  }
+}
+
+TEST(PhotometricStereo, LeastSquaresSayNothingWhereTheirNormalWouldFaceAway) {
+  const auto lights = test::RingOfLights(6, 60);
+  std::vector<double> observations;
+  const Vector3d away(1, 0, -0.4);
+  for (const auto& light : lights) observations.push_back(light.to_light.dot(away) + 0.9);
+  observations[0] += 3;  // a highlight
+  const auto estimate =
+      PhotometricSolver(lights, By(StereoMethod::kLeastSquares)).Solve(observations);
+  EXPECT_GT(estimate.normal.z(), 0);
 }
 
 TEST(PhotometricStereo, RefusesFewerThanThreeLights) {
