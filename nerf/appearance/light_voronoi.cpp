@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "nerf/parallel.h"
 #include "sfm/input_error.h"
@@ -16,6 +17,8 @@ using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kSameAngle = 1e-3;  // radians
+constexpr double kReach = 2;         // of a light, in typical distances of neighbours
+constexpr int kPixelsOfALight = 100;
 
 double Polar(const Vector3d& d) { return std::atan2(std::hypot(d.x(), d.z()), d.y()); }
 double Azimuth(const Vector3d& d) {
@@ -78,7 +81,33 @@ int LightOnGrid(const Grid& grid, const Vector3d& d) {
   return lights[static_cast<std::size_t>(column)];
 }
 
+// The cosine of the angle up to which a light speaks for the directions around it. Lights in the
+// same place are one.
+float CosineOfReach(const Eigen::Matrix<float, Eigen::Dynamic, 3>& directions) {
+  const auto count = static_cast<int>(directions.rows());
+  std::vector<float> nearest(static_cast<std::size_t>(count), -1);
+  ParallelFor(count, 16, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
+      for (int j = 0; j < count; ++j) {
+        if ((directions.row(i) - directions.row(j)).norm() < kSameAngle) continue;
+        float& cosine = nearest[static_cast<std::size_t>(i)];
+        cosine = std::max(cosine, directions.row(i).dot(directions.row(j)));
+      }
+    }
+  });
+  const auto middle = nearest.begin() + count / 2;
+  std::ranges::nth_element(nearest, middle);
+  const double reach = kReach * std::acos(std::clamp(static_cast<double>(*middle), -1.0, 1.0));
+  return static_cast<float>(std::cos(std::min(reach, kPi)));
+}
+
 }  // namespace
+
+int CellRows(int lights, int map_height) {
+  // 2 rows^2 pixels in all.
+  const double wanted = std::sqrt(kPixelsOfALight * static_cast<double>(lights) / 2);
+  return map_height * std::max(1, static_cast<int>(std::ceil(wanted / map_height)));
+}
 
 LightVoronoi::LightVoronoi(std::span<const DirectionalLight> lights, int height)
     : light_count_(static_cast<int>(lights.size())),
@@ -93,6 +122,7 @@ LightVoronoi::LightVoronoi(std::span<const DirectionalLight> lights, int height)
   for (int i = 0; i < light_count_; ++i) {
     directions.row(i) = lights[static_cast<std::size_t>(i)].to_light.cast<float>();
   }
+  const float least_cosine = grid ? -1.0f : CosineOfReach(directions);
   ParallelFor(height, 1, [&](std::int64_t begin, std::int64_t end) {
     Eigen::VectorXf cosines(light_count_);
     for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
@@ -103,7 +133,7 @@ LightVoronoi::LightVoronoi(std::span<const DirectionalLight> lights, int height)
           light = LightOnGrid(*grid, d);
         } else {
           cosines.noalias() = directions * d.cast<float>();
-          cosines.maxCoeff(&light);
+          if (cosines.maxCoeff(&light) < least_cosine) light = light_count_;
         }
       }
     }
@@ -111,30 +141,40 @@ LightVoronoi::LightVoronoi(std::span<const DirectionalLight> lights, int height)
 }
 
 std::vector<double> LightVoronoi::SolidAngles() const {
-  const EnvironmentMap one = EnvironmentMap(
-      [&] {
-        Image image(2 * height_, height_, 3, ColorEncoding::kLinear);
-        std::ranges::fill(image.pixels, 1.0f);
-        return image;
-      }(),
-      "cells");
+  Image ones(2 * height_, height_, 3, ColorEncoding::kLinear);
+  std::ranges::fill(ones.pixels, 1.0f);
   std::vector<double> angles;
-  for (const Color& color : Integrate(one)) angles.push_back(color.x());
+  for (const Color& color : Integrate({std::move(ones), "cells"})) angles.push_back(color.x());
   return angles;
 }
 
 std::vector<Color> LightVoronoi::Integrate(const EnvironmentMap& map, double degrees) const {
-  std::vector<Color> sums(static_cast<std::size_t>(light_count_), Color::Zero());
+  std::vector<Color> sums = Sums(map, degrees);
+  sums.pop_back();
+  return sums;
+}
+
+double LightVoronoi::ShareLeftOut(const EnvironmentMap& map, double degrees) const {
+  const std::vector<Color> sums = Sums(map, degrees);
+  double power = 0;
+  for (const Color& sum : sums) power += Luminance(sum);
+  return power > 0 ? Luminance(sums.back()) / power : 0;
+}
+
+std::vector<Color> LightVoronoi::Sums(const EnvironmentMap& map, double degrees) const {
+  std::vector<Color> sums(static_cast<std::size_t>(light_count_) + 1, Color::Zero());
   const int width = 2 * height_;
+  const int repeat = height_ / map.height();  // a pixel of the map is so many of ours, squared
   const int turn = static_cast<int>(std::lround(degrees / 360 * width)) % width;
   for (int y = 0; y < height_; ++y) {
-    const double solid_angle = map.SolidAngle(y);
+    const double solid_angle =
+        2 * kPi / width * (std::cos(kPi * y / height_) - std::cos(kPi * (y + 1) / height_));
     for (int x = 0; x < width; ++x) {
       // What stands at x came from `turn` pixels further right: azimuth grows to the right, which
       // seen from above is clockwise.
       const int from = ((x + turn) % width + width) % width;
       const int light = light_of_pixel_[static_cast<std::size_t>(y) * width + x];
-      sums[static_cast<std::size_t>(light)] += map.At(from, y) * solid_angle;
+      sums[static_cast<std::size_t>(light)] += map.At(from / repeat, y / repeat) * solid_angle;
     }
   }
   return sums;

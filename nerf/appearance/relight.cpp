@@ -74,6 +74,16 @@ bool Relight(const OlatCapture& capture, InputEncoding encoding,
   return true;
 }
 
+void RefuseBlackCapture(const OlatCapture& capture, InputEncoding encoding) {
+  const auto is_black = [&](const std::filesystem::path& file) {
+    const Image image = ReadLinearImage(file, encoding);
+    return std::ranges::none_of(image.pixels, [](float value) { return value > 0; });
+  };
+  if (!std::ranges::all_of(capture.images, is_black)) return;
+  throw sfm::InputError("{}: all {} images are black; photograph the subject with the lights on",
+                        capture.images.front().parent_path().string(), capture.images.size());
+}
+
 double AutoExposure(const Image& picture) {
   std::vector<float> brightest;
   for (std::size_t i = 0; i < picture.pixels.size(); i += 3) {

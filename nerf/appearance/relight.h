@@ -32,6 +32,10 @@ bool Relight(const OlatCapture& capture, InputEncoding encoding,
              const std::function<bool()>& keep_on,
              const std::function<void(int, const Image&)>& consume);
 
+// Throws sfm::InputError where all images of a capture are black. Reads them up to the first that
+// is not.
+void RefuseBlackCapture(const OlatCapture& capture, InputEncoding encoding);
+
 // The stops by which a linear picture must be made brighter for 98 % of its pixels to be below 0.8;
 // 0 for a black one.
 double AutoExposure(const Image& picture);

@@ -13,15 +13,20 @@ void AddLightStageFlags(CLI::App& command, LightStageFlags& flags) {
   CLI::Option* stage = command.add_option(
       "--light-stage", options.lights,
       "instead: a subject on a table under so many lights, one at a time, for nerf relight");
-  command
-      .add_option("--environment", options.environment,
-                  "with --light-stage: a map; the subject directly under it is truth/direct.exr")
-      ->needs(stage);
+  flags.light_stage = stage;
+  // What would be ignored without a word.
+  for (const char* ordinary : {"--views", "--samples", "--seed", "--calls-for"}) {
+    stage->excludes(command.get_option(ordinary));
+  }
+  CLI::Option* environment = command.add_option(
+      "--environment", options.environment,
+      "with --light-stage: a map; the subject directly under it is truth/direct.exr");
+  environment->needs(stage);
   command
       .add_option("--paths", options.paths,
                   "with --environment: of light, in each quarter of a pixel of that picture")
       ->capture_default_str()
-      ->needs(stage);
+      ->needs(environment);
   command
       .add_option(
           "--merl", options.merl,

@@ -9,10 +9,13 @@ namespace nerf {
 
 // --light-stage and what goes with it, of `nerf sample`.
 struct LightStageFlags {
-  appearance::LightStageOptions options{.lights = 0};
+  appearance::LightStageOptions options;
+  const CLI::Option* light_stage = nullptr;
 
-  bool Given() const { return options.lights != 0; }
+  // Whether a light stage is asked for, if only with a number of lights that is refused later.
+  bool Given() const { return light_stage != nullptr && light_stage->count() > 0; }
 };
+// To be added after the flags of the ordinary sample, most of which it excludes.
 void AddLightStageFlags(CLI::App& command, LightStageFlags& flags);
 
 // Writes the capture and says so. Throws sfm::InputError, and CLI::RuntimeError after Ctrl-C.

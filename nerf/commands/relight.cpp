@@ -1,8 +1,11 @@
 #include "nerf/appearance/relight.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -27,6 +30,9 @@ namespace fs = std::filesystem;
 using namespace appearance;
 
 constexpr double kFramesPerSecond = 24;
+constexpr std::size_t kFewestLights = 3;
+constexpr double kMostStops = 64;         // beyond it floats overflow
+constexpr double kWorthAWarning = 0.001;  // of the environment's power
 
 struct RelightArguments {
   std::string capture;
@@ -43,6 +49,13 @@ struct RelightArguments {
   void Check() const {
     if (frames < 0 || frames > 10'000) {
       throw sfm::InputError("--frames is {}: choose a number from 1 to 10000", frames);
+    }
+    if (!(std::abs(rotate) <= 360)) {
+      throw sfm::InputError("--rotate is {}: choose -360 to 360 degrees", rotate);
+    }
+    if (exposure && !(std::abs(*exposure) <= kMostStops)) {
+      throw sfm::InputError("--exposure is {}: choose -{} to {} stops", *exposure, kMostStops,
+                            kMostStops);
     }
     if (memory_mb < 1) throw sfm::InputError("--memory-mb is {}: choose 1 or more", memory_mb);
     if (frames > 0 && !FfmpegIsInstalled()) {
@@ -61,14 +74,22 @@ EnvironmentMap OpenEnvironment(const std::string& name) {
   return EnvironmentMap::Read(name);
 }
 
-// Both as 8-bit pictures at the same exposure.
-double PsnrAgainst(const fs::path& truth, const Image& relit, double stops) {
-  const Image direct = ReadLinearImage(truth, InputEncoding::kAuto);
-  if (direct.width != relit.width || direct.height != relit.height) {
-    throw sfm::InputError("--truth {}: is {} x {} pixels, the capture's are {} x {}",
-                          truth.string(), direct.width, direct.height, relit.width, relit.height);
+// Before anything is summed: a wrong file is told at once.
+Image OpenTruth(const fs::path& file, const OlatCapture& capture) {
+  Image truth = ReadLinearImage(file, InputEncoding::kAuto);
+  if (truth.width == capture.width && truth.height == capture.height) return truth;
+  throw sfm::InputError("--truth {}: is {} x {} pixels, the capture's are {} x {}", file.string(),
+                        truth.width, truth.height, capture.width, capture.height);
+}
+
+OlatCapture OpenCapture(const RelightArguments& arguments) {
+  OlatCapture capture = FindOlatCapture(arguments.capture, arguments.olat);
+  if (capture.lights.size() < kFewestLights) {
+    throw sfm::InputError("{}: images under {} light{}; relighting needs {} or more",
+                          arguments.capture, capture.lights.size(),
+                          capture.lights.size() == 1 ? "" : "s", kFewestLights);
   }
-  return Psnr(Exposed(direct, stops), Exposed(relit, stops));
+  return capture;
 }
 
 void RunRelight(const RelightArguments& arguments) {
@@ -76,16 +97,27 @@ void RunRelight(const RelightArguments& arguments) {
   arguments.Check();
   UseThreads(arguments.threads);
   const auto& stop = StopOnInterrupt();
-  const OlatCapture capture = FindOlatCapture(arguments.capture, arguments.olat);
+  const OlatCapture capture = OpenCapture(arguments);
+  const fs::path folder = arguments.output.empty() ? capture.name + "-relit" : arguments.output;
+  RefuseAmongImages(capture, folder);
+  std::optional<Image> truth;
+  if (!arguments.truth.empty()) truth = OpenTruth(arguments.truth, capture);
   const EnvironmentMap map = OpenEnvironment(arguments.environment);
-  const LightVoronoi cells(capture.lights, map.height());
+  RefuseBlackCapture(capture, arguments.olat.encoding);
+  const LightVoronoi cells(capture.lights,
+                           CellRows(static_cast<int>(capture.lights.size()), map.height()));
+  double left_out = 0;
   std::vector<std::vector<Color>> weights;
   const int frames = std::max(1, arguments.frames);
   for (int f = 0; f < frames; ++f) {
-    weights.push_back(RelightWeights(capture, cells, map, arguments.rotate + 360.0 * f / frames));
+    const double degrees = arguments.rotate + 360.0 * f / frames;
+    weights.push_back(RelightWeights(capture, cells, map, degrees));
+    left_out = std::max(left_out, cells.ShareLeftOut(map, degrees));
   }
-  const fs::path folder = arguments.output.empty() ? capture.name + "-relit" : arguments.output;
-  RefuseAmongImages(capture, folder);
+  if (left_out > kWorthAWarning) {
+    spdlog::warn("{}{:.1f} % of {}'s light comes from where the capture has no lights: left out",
+                 frames > 1 ? "up to " : "", 100 * left_out, arguments.environment);
+  }
   const fs::path frame_folder = folder / "frames";
   sfm::MakeOutputFolder(arguments.frames > 0 ? frame_folder : folder);
   // One exposure for the whole film: by its first frame.
@@ -97,7 +129,7 @@ void RunRelight(const RelightArguments& arguments) {
       [&](int frame, const Image& picture) {
         if (!stops) stops = AutoExposure(picture);
         if (frame == 0) {
-          if (!arguments.truth.empty()) psnr = PsnrAgainst(arguments.truth, picture, *stops);
+          if (truth) psnr = Psnr(Exposed(*truth, *stops), Exposed(picture, *stops));
           WriteImage(folder / "relit.exr", picture);
           WriteImage(folder / "relit.png", Exposed(picture, *stops));
         }

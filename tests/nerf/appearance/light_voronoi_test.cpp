@@ -127,6 +127,73 @@ TEST(LightVoronoi, TurningTheEnvironmentTurnsItCounterClockwise) {
   EXPECT_TRUE((cells.Integrate(map, 360)[0] > 0).all());
 }
 
+// A map whose lower part (y < `above`) shines or does not.
+EnvironmentMap LitBelow(double above, float radiance_above) {
+  Image image(128, 64, 3, ColorEncoding::kLinear);
+  const EnvironmentMap grid(image, "grid");
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      std::fill_n(image.At(x, y), 3, grid.Direction(x, y).y() < above ? 1.0f : radiance_above);
+    }
+  }
+  return {image, "below"};
+}
+
+std::vector<DirectionalLight> Lattice(int count, double lowest) {
+  std::vector<Vector3d> directions;
+  for (int i = 0; i < count; ++i) {
+    const Vector3d d = FibonacciDirection(i, count);
+    if (d.z() >= lowest) directions.push_back({d.x(), d.z(), -d.y()});
+  }
+  return LightsAt(directions);
+}
+
+// Nobody photographed the subject lit from below: no image may stand for that.
+TEST(LightVoronoi, LeavesOutTheLightOfWhereThereAreNoLights) {
+  const LightVoronoi dome(Lattice(400, 0.3), 64);  // above 17 degrees
+  const EnvironmentMap below = LitBelow(-0.3, 0);
+  for (const Color& weight : dome.Integrate(below)) EXPECT_TRUE(weight.isZero(0));
+  EXPECT_EQ(dome.ShareLeftOut(below), 1);
+  EXPECT_NEAR(dome.ShareLeftOut(LitBelow(2, 1)), 0.5, 0.15);
+  // All that is near the lights is kept.
+  Image image(128, 64, 3, ColorEncoding::kLinear);
+  std::fill_n(image.At(3, 5), 3, 1.0f);
+  const EnvironmentMap sun(image, "sun");
+  EXPECT_EQ(dome.ShareLeftOut(sun), 0);
+  EXPECT_EQ(dome.ShareLeftOut(EnvironmentMap::Uniform(Color::Zero())), 0);
+}
+
+TEST(LightVoronoi, LightsAllAroundLeaveOutNothing) {
+  const EnvironmentMap all = EnvironmentMap::Uniform(Color::Ones());
+  for (const int count : {3, 4, 5, 7, 12, 62, 250, 1000}) {
+    EXPECT_EQ(LightVoronoi(Lattice(count, -1), 64).ShareLeftOut(all), 0) << count;
+  }
+  // Rows far apart, close within: still a grid.
+  EXPECT_EQ(LightVoronoi(GridOfLights(3, 72), 64).ShareLeftOut(all), 0);
+  // Each direction twice is no distance of 0.
+  std::vector<DirectionalLight> twice = Lattice(60, -1);
+  twice.insert(twice.end(), twice.begin(), twice.end());
+  EXPECT_EQ(LightVoronoi(twice, 64).ShareLeftOut(all), 0);
+}
+
+// A light by its name is a small map; its pixels are wider than the cells of a thousand lights.
+TEST(LightVoronoi, CellsAreFinerThanACoarseMap) {
+  EXPECT_EQ(CellRows(1000, 512), 512);
+  EXPECT_EQ(CellRows(12, 32), 32);
+  const int rows = CellRows(1000, 32);
+  EXPECT_EQ(rows % 32, 0);
+  EXPECT_GE(2 * rows * rows, 100 * 1000);
+  const LightVoronoi cells(Lattice(1000, -1), rows);
+  const auto weights = cells.Integrate(EnvironmentMap::Uniform(Color(1, 2, 3)));
+  double sum = 0;
+  for (const Color& weight : weights) {
+    EXPECT_NEAR(weight.x(), 4 * kPi / 1000, 0.2 * 4 * kPi / 1000);
+    EXPECT_NEAR(weight.z(), 3 * weight.x(), 1e-9);
+    sum += weight.x();
+  }
+  EXPECT_NEAR(sum, 4 * kPi, 1e-6);
+}
+
 TEST(LightVoronoi, OfNoLightsIsRefused) {
   EXPECT_THAT(test::InputErrorOf([] { LightVoronoi({}, 8); }), HasSubstr("no lights"));
 }

@@ -136,6 +136,17 @@ TEST(Relight, NamesAnImageThatCannotBeRead) {
               HasSubstr("3.exr"));
 }
 
+TEST(Relight, RefusesACaptureInTheDark) {
+  const test::ScratchFolder scratch;
+  const OlatCapture capture = FlatCapture(scratch.path(), LightStageLights(4));
+  RefuseBlackCapture(capture, InputEncoding::kAuto);
+  for (const fs::path& file : capture.images) {
+    WriteImage(file, Image(4, 3, 3, ColorEncoding::kLinear));
+  }
+  EXPECT_THAT(test::InputErrorOf([&] { RefuseBlackCapture(capture, InputEncoding::kAuto); }),
+              AllOf(HasSubstr(scratch.path().string()), HasSubstr("all 4 images are black")));
+}
+
 TEST(Exposure, IsInStopsAndByItselfPutsBrightPartsBelowWhite) {
   Image image(10, 10, 3, ColorEncoding::kLinear);
   std::ranges::fill(image.pixels, 3.2f);
@@ -229,6 +240,37 @@ TEST(LightStage, WritesACaptureThatCanBeRelit) {
   // Stopped half-way it is none.
   EXPECT_FALSE(WriteLightStage(stage, options, [] { return false; }));
   EXPECT_THAT(test::InputErrorOf([&] { FindOlatCapture(stage, {}); }), HasSubstr("stage"));
+}
+
+// Names alone do not make a file ours: only the mark of a capture of ours does.
+TEST(LightStage, LeavesFilesOfOthersAlone) {
+  LightStageOptions options;
+  options.lights = 3;
+  options.width = options.height = 4;
+  const auto write = [&](const fs::path& folder) {
+    return test::InputErrorOf([&] { WriteLightStage(folder, options, [] { return true; }); });
+  };
+  for (const char* theirs : {"lights.txt", "light_0000.exr", "truth/direct.exr", "notes.txt"}) {
+    const test::ScratchFolder scratch;
+    const fs::path file = scratch.Write(theirs, "theirs");
+    EXPECT_THAT(write(scratch.path()), HasSubstr("choose an empty or a new folder")) << theirs;
+    EXPECT_EQ(fs::file_size(file), 6u) << theirs;
+    EXPECT_EQ(std::distance(fs::directory_iterator(scratch.path()), {}), 1) << theirs;
+  }
+  const test::ScratchFolder scratch;
+  scratch.Write("file", "theirs");
+  EXPECT_THAT(write(scratch.path() / "file"), HasSubstr("is a file"));
+}
+
+TEST(LightStage, ThatWasStoppedIsReplaced) {
+  const test::ScratchFolder scratch;
+  LightStageOptions options;
+  options.lights = 3;
+  options.width = options.height = 4;
+  int asked = 0;
+  EXPECT_FALSE(WriteLightStage(scratch.path(), options, [&] { return ++asked < 3; }));
+  EXPECT_TRUE(fs::exists(scratch.path() / "light_0001.exr"));
+  EXPECT_TRUE(WriteLightStage(scratch.path(), options, [] { return true; }));
 }
 
 TEST(LightStage, RefusesOptionsOutOfRangeAndFoldersOfOthers) {
