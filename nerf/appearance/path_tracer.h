@@ -38,6 +38,9 @@ class UniformStream {
 // Estimates radiance along rays by paths from the camera. Lights and the environment are drawn at
 // each surface, the environment also by the BRDF's own directions, weighted by the power heuristic
 // (Veach 1997); emitters are found by those alone.
+// A translucent body is lit once, when the tracer is made, by the lights and the environment alone:
+// light that other surfaces bounce to it, or that emitters send, does not enter it, so with bounces
+// it is a little too dark beside bright neighbours. Its own light does reach the others.
 class PathTracer {
  public:
   // Keeps references to the scene. Lights the translucent surfaces now.

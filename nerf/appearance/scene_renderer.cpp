@@ -92,13 +92,13 @@ class Accumulator {
 
 void RenderSettings::Check() const {
   if (places < 1 || places > 64) {
-    throw sfm::InputError("{} places in a pixel: choose 1 to 64", places);
+    throw sfm::InputError("RenderSettings::places is {}: choose 1 to 64", places);
   }
   if (paths_per_place < 1 || paths_per_place > 1'000'000) {
     throw sfm::InputError("--paths is {}: choose a number from 1 to 1000000", paths_per_place);
   }
   if (!(stop_at_noise >= 0))
-    throw sfm::InputError("--noise is {}: choose 0 or more", stop_at_noise);
+    throw sfm::InputError("RenderSettings::stop_at_noise is {}: choose 0 or more", stop_at_noise);
 }
 
 SceneRendering RenderScene(const SurfaceScene& scene, const TransportTerms& terms,
@@ -114,6 +114,7 @@ SceneRendering RenderScene(const SurfaceScene& scene, const TransportTerms& term
   std::optional<sfm::ProgressLine> progress;
   if (!title.empty()) progress.emplace(title, settings.paths_per_place);
   int passes = 0;
+  std::string noise_left;
   bool finished = true;
   while (passes < settings.paths_per_place) {
     if (!keep_on()) {
@@ -138,7 +139,8 @@ SceneRendering RenderScene(const SurfaceScene& scene, const TransportTerms& term
     // Noise is worth its arithmetic every so often: at powers of two.
     const bool look = passes > 1 && (passes & (passes - 1)) == 0;
     const double noise = look ? sums.Result(passes).noise : 0;
-    if (progress && look) progress->Update(passes, fmt::format("noise {:.2f} %", 100 * noise));
+    if (look) noise_left = fmt::format("noise {:.2f} %", 100 * noise);
+    if (progress) progress->Update(passes, noise_left);
     if (look && settings.stop_at_noise > 0 && noise <= settings.stop_at_noise) break;
   }
   SceneRendering result = sums.Result(std::max(1, passes));

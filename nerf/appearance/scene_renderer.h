@@ -17,7 +17,7 @@ struct RenderSettings {
   double stop_at_noise = 0;  // relative; ends earlier where it is reached; 0: all paths
   std::uint64_t seed = 0;
 
-  // Throws sfm::InputError, naming the flag, where a value is out of range.
+  // Throws sfm::InputError, naming the value, where it is out of range.
   void Check() const;
 };
 

@@ -217,6 +217,48 @@ TEST(CoatedDiffuse, WithAWhiteBasePassesTheWhiteFurnace) {
   }
 }
 
+// A polished coat: Fresnel's share in the mirror's direction, the rest of the light through the
+// base.
+TEST(CoatedDiffuse, TendsToAMirrorOverAMattBaseAsItsRoughnessGoes) {
+  const Color red(0.8, 0.2, 0.1);
+  const Color F0 = Color::Constant(0.04);
+  // Mean of Schlick's F over the cosine-weighted hemisphere: F0 + (1 - F0) 2 / 42.
+  const double mean = 0.04 + 0.96 / 21;
+  for (const double alpha : {1e-2, 1e-3, 0.0}) {
+    const CoatedDiffuse glazed(red, 1.5, alpha);
+    for (const double v : {1.0, 0.5, 0.2}) {
+      EXPECT_NEAR(glazed.CoatReflectance(v), SchlickFresnel(F0, v).x(), 0.004) << alpha << " " << v;
+      // Far from the mirrored direction the base is all.
+      const double l = v < 0.9 ? 0.97 : 0.3;
+      const Color base =
+          red * (1 - SchlickFresnel(F0, v)) * (1 - SchlickFresnel(F0, l)) / (kPi * (1 - mean));
+      EXPECT_LT((glazed.Eval(Towards(v), Towards(l)) - base).abs().maxCoeff(), 0.01 * base.x());
+    }
+  }
+}
+
+TEST(CoatedDiffuse, StaysFiniteWhereLightGrazes) {
+  for (const double alpha : {0.0, 1e-3, 0.1, 1.0}) {
+    const CoatedDiffuse glazed(Color::Ones(), 1.5, alpha);
+    for (const double v : {1e-4, 1e-8, 1e-16, 1e-300}) {
+      const Vector3d w_o = Towards(v);
+      // Schlick's coat takes all light that grazes it; nothing is left for the base.
+      EXPECT_LE(glazed.CoatReflectance(v), 1.005) << alpha << " " << v;
+      for (const double l : {1.0, 1e-4, 1e-16, 1e-300}) {
+        const Vector3d w_i(-std::sqrt(1 - l * l), 0, l);
+        EXPECT_TRUE((glazed.Eval(w_o, w_i) * l).isFinite().all()) << alpha << " " << v << " " << l;
+        EXPECT_TRUE(std::isfinite(glazed.Pdf(w_o, w_i)));
+      }
+      for (std::uint64_t i = 0; i < 200; ++i) {
+        const auto sample = glazed.Sample(w_o, test::Uniform3(5, i));
+        if (!sample) continue;
+        ASSERT_GT(sample->pdf, 0) << alpha << " " << v;
+        ASSERT_TRUE((sample->f * (sample->w_i.z() / sample->pdf)).isFinite().all());
+      }
+    }
+  }
+}
+
 TEST(CoatedDiffuse, OfNoCoatIsLambert) {
   const Color red(0.8, 0.2, 0.1);
   const CoatedDiffuse bare(red, 1.0 + 1e-9, 0.5);
