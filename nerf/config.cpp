@@ -251,7 +251,9 @@ std::set<std::string> NamedEffects(const std::string& preset,
                                    const std::vector<std::string>& assignments) {
   std::set<std::string> named;
   const auto take = [&](const json& change) {
-    const json effects = change.is_object() ? change.value("effects", json()) : json();
+    if (!change.is_object()) return;
+    if (change.contains(json::json_pointer("/march/near_distance"))) named.insert("near");
+    const json effects = change.value("effects", json());
     if (!effects.is_object()) return;
     for (const auto& [name, block] : effects.items()) named.insert(name);
   };

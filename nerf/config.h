@@ -45,6 +45,9 @@ const std::map<std::string, std::string>& BuiltInPresets();
 // out of range.
 Config LoadConfig(const std::string& preset, const std::vector<std::string>& assignments);
 
+// Where rays begin is found as effects are: "near" among their names.
+inline constexpr char kNearKey[] = "march.near_distance";
+
 // The effects that a person's own configuration decides: those that assignments name, and those
 // that a JSON file (or its parents) names.
 std::set<std::string> NamedEffects(const std::string& preset,

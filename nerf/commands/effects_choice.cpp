@@ -21,7 +21,7 @@ namespace {
 // What automatic choices act on so far. The evidence for the others is shown, and they are
 // simulated when asked for: on generated captures they have not been worth a decibel yet (README,
 // "Effects"), and to leave directions away has not been measured on real ones.
-const std::set<std::string> kAutomatic = {"exposure", "masks"};
+const std::set<std::string> kAutomatic = {"exposure", "masks", "depth", "near"};
 
 // Trials tell what shows early; that colour depends on the direction shows late.
 const std::set<std::string> kTried = {"exposure"};
@@ -69,7 +69,7 @@ EffectsChoice ChooseEffects(const sfm::PosedImages& posed, const std::set<std::s
   for (const Verdict& verdict : choice.inspection.verdicts) {
     const bool acts = kAutomatic.contains(verdict.effect) && !named.contains(verdict.effect);
     if (!acts || verdict.Sure() < kSureEnough) continue;
-    choice.assignments.push_back(EffectAssignment(verdict.effect, verdict.setting));
+    choice.assignments.push_back(verdict.assignment);
   }
   choice.seconds = watch.Seconds();
   return choice;
@@ -114,10 +114,10 @@ void TryWhatIsOpen(const Config& config, const SceneFacts& scene, const Dataset&
     verdict.threshold = kWorthIt;
     verdict.decided = true;
     verdict.on = verdict.figure >= kWorthIt;
-    verdict.setting = verdict.on ? "{}" : "null";
+    verdict.assignment = EffectAssignment(verdict.effect, verdict.on ? "{}" : "null");
     verdict.evidence = fmt::format("{}; tried: {:.2f} dB with it, {:.2f} dB without",
                                    verdict.evidence, with.psnr, without->psnr);
-    choice.assignments.push_back(EffectAssignment(verdict.effect, verdict.setting));
+    choice.assignments.push_back(verdict.assignment);
     fmt::print("{:<11} {:<9} {:>5}  {}\n", verdict.effect, verdict.on ? "on" : "off", "",
                verdict.evidence);
   }

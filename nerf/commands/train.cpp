@@ -116,6 +116,7 @@ std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
 // Another preset for the same scene.
 Config WithEffectsOf(const Config& decided, Config preset) {
   preset.effects = decided.effects;
+  preset.march.near_distance = decided.march.near_distance;
   return preset;
 }
 

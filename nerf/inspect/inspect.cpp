@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "nerf/config.h"
 #include "nerf/data/camera.h"
 #include "nerf/data/mask.h"
 #include "nerf/inspect/exif_stops.h"
@@ -29,12 +30,14 @@ constexpr double kDeviation = 1.48;
 
 // From which on a scene calls for an effect.
 constexpr double kExposureStops = 0.1;   // standard deviation over the photographs
-constexpr double kViewDependent = 0.08;  // share of points
+constexpr double kViewDependent = 0.12;  // share of points
 constexpr double kFlat = 0.05;      // log light, by which places without any texture may change
 constexpr double kFarAway = 0.007;  // share of points beyond kFar
 constexpr double kFar = 8;          // radii of what the cameras look at
 constexpr double kPassing = 0.02;   // share of sightings that show something else
 constexpr double kSomethingElse = 0.35;  // log light, and four times what is usual
+constexpr double kNearest = 0.01;        // share of sightings that may be nearer than "the nearest"
+constexpr double kShareOfTheWay = 0.5;   // to them, in which nothing stands
 constexpr double kFewPhotographs = 15;   // before which a point stands
 constexpr double kSteps = 2.0 / 255;     // spread of one colour, as files round it
 
@@ -48,7 +51,7 @@ Verdict Fact(const std::string& effect, bool on, double figure, const std::strin
   verdict.figure = figure;
   verdict.decided = true;
   verdict.on = on;
-  verdict.setting = on ? setting : "null";
+  verdict.assignment = EffectAssignment(effect, on ? setting : "null");
   return verdict;
 }
 
@@ -192,6 +195,27 @@ Verdict JudgeDepth(const sfm::PosedImages& posed) {
   return verdict;
 }
 
+// Where rays may begin: whatever stands nearer to a camera than half of the way to the nearest
+// points is fog that nobody has seen.
+Verdict JudgeNear(const sfm::PosedImages& posed) {
+  const sfm::SceneNormalization normalized = sfm::NormalizeScene(posed);
+  std::vector<double> distances;
+  for (const sfm::SparsePoint& point : posed.points) {
+    for (const sfm::TrackElement& seen : point.track) {
+      const Eigen::Vector3d camera = posed.images[seen.image].world_from_camera.translation();
+      distances.push_back(normalized.scale * (point.x_in_world - camera).norm());
+    }
+  }
+  const double nearest = Quantile(distances, kNearest);
+  const double near = std::clamp(kShareOfTheWay * nearest, MarchOptions().near_distance, kFar);
+  Verdict verdict = Fact("near", near > MarchOptions().near_distance, near,
+                         fmt::format("the nearest points are {:.2f} radii before a camera, so rays "
+                                     "begin at {:.2f}",
+                                     nearest, near));
+  verdict.assignment = fmt::format("{}={:.3f}", kNearKey, near);
+  return verdict;
+}
+
 }  // namespace
 
 Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read) {
@@ -221,6 +245,7 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   inspection.verdicts.push_back(JudgeExposure(inspection.stops, "in the same points"));
   inspection.verdicts.push_back(JudgePassers(colors, fit));
   inspection.verdicts.push_back(JudgeDepth(posed));
+  inspection.verdicts.push_back(JudgeNear(posed));
   return inspection;
 }
 

@@ -7,7 +7,9 @@ namespace nerf {
 
 // Whether a scene calls for an effect, and what says so.
 struct Verdict {
-  std::string effect;    // its key in the configuration's effects; "alpha" and "hdr" have none
+  // Its key in the configuration's effects; "alpha" and "hdr" have none, and "near" is
+  // march.near_distance.
+  std::string effect;
   std::string evidence;  // what was measured, in words with its figure
   double figure = 0;     // the same as a number, in the unit of the threshold
   double threshold = 0;  // from which on the scene calls for it
@@ -17,8 +19,8 @@ struct Verdict {
   // From 0 at the threshold to 1 at twice or half of it. Facts are sure.
   double Sure() const;
 
-  // What the configuration says for it: "{}", "null", or with options.
-  std::string setting = {};
+  // What the configuration says for it, as --set does: "effects.robust={}".
+  std::string assignment = {};
 };
 
 // A table of verdicts, a line each.

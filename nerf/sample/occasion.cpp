@@ -57,9 +57,7 @@ int UsualViews(Occasion occasion) { return occasion == Occasion::kDepth ? 9 : 36
 
 Scene SceneOf(Occasion occasion) {
   Scene scene = BuiltInScene();
-  const bool far = occasion == Occasion::kBuiltIn || occasion == Occasion::kBackground;
-  if (!far) {
-    // The sand goes to the horizon.
+  if (occasion == Occasion::kAlpha) {
     std::erase_if(scene.objects,
                   [](const Object& object) { return std::holds_alternative<Disc>(object.shape); });
     scene.dome.reset();

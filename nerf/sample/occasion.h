@@ -13,7 +13,7 @@ namespace nerf::sample {
 // from wrong.
 enum class Occasion {
   kBuiltIn,     // the built-in scene: mirrors, a sky, a ground to the horizon
-  kNothing,     // matt things on a slab, black around them: the simplest field is enough
+  kNothing,     // matt things on sand, under a painted tent: the simplest field is enough
   kView,        // the same with coats that mirror
   kBackground,  // a sky, and ground to the horizon
   kExposure,    // exposure and white balance change from photograph to photograph

@@ -73,7 +73,7 @@ TEST_F(EffectsCommands, InspectPrintsAVerdictForEachEffectWithItsEvidence) {
   EXPECT_THAT(table.output, HasSubstr("stops"));
   const auto json = RunNerf("inspect --json " + Path("exposure/truth/sparse"));
   const auto root = nlohmann::json::parse(json.output);
-  EXPECT_EQ(root.at("verdicts").size(), 8u);
+  EXPECT_EQ(root.at("verdicts").size(), 9u);
   EXPECT_EQ(root.at("exposure_stops").size(), 17u);
 }
 
@@ -83,7 +83,8 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   EXPECT_THAT(run.output, HasSubstr("what the capture calls for"));
   EXPECT_FALSE(Json("auto/config.json").at("effects").at("exposure").is_null());
   EXPECT_TRUE(Json("auto/config.json").at("effects").at("masks").is_null());
-  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 8u);
+  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 9u);
+  EXPECT_GT(Json("auto/config.json").at("march").at("near_distance"), 0.1);
 
   const auto eval = RunNerf("eval " + Path("auto"));
   EXPECT_THAT(eval.output, HasSubstr("photograph's exposure, fitted"));
@@ -101,10 +102,12 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
 }
 
 TEST_F(EffectsCommands, WhatAPersonSaysStands) {
-  const auto run = RunNerf(Train("exposure", "asked", "--effects -exposure,+robust"));
+  const auto run = RunNerf(
+      Train("exposure", "asked", "--effects -exposure,+robust --set march.near_distance=0.3"));
   ASSERT_EQ(run.exit_status, 0) << run.output;
   EXPECT_THAT(run.output, HasSubstr("as asked for"));
   const auto effects = Json("asked/config.json").at("effects");
+  EXPECT_EQ(Json("asked/config.json").at("march").at("near_distance"), 0.3);
   EXPECT_TRUE(effects.at("exposure").is_null());
   EXPECT_FALSE(effects.at("robust").is_null());
   ExpectRefused("render " + Path("asked") + " --exposure-of view_001.png",
@@ -113,6 +116,7 @@ TEST_F(EffectsCommands, WhatAPersonSaysStands) {
   const auto configured = RunNerf(Train("exposure", "configured", "--effects config"));
   EXPECT_THAT(configured.output, Not(HasSubstr("what the capture calls for")));
   EXPECT_TRUE(Json("configured/config.json").at("effects").at("exposure").is_null());
+  EXPECT_EQ(Json("configured/config.json").at("march").at("near_distance"), 0.05);
 
   sfm::WriteFileAtomically(Path("mine.json"),
                            R"({"parent": "base", "effects": {"exposure": null}})");

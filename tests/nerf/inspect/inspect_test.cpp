@@ -8,9 +8,11 @@
 #include <set>
 #include <string>
 
+#include "nerf/data/image_io.h"
 #include "nerf/sample/sample_folder.h"
 #include "sfm/colmap_model.h"
 #include "sfm/masks.h"
+#include "sfm/scene_normalization.h"
 #include "sfm/transforms_json.h"
 #include "tests/support/scratch_folder.h"
 
@@ -49,7 +51,7 @@ TEST_P(EachOccasion, IsJudgedRightly) {
   std::set<std::string> on;
   for (const Verdict& verdict : inspection.verdicts) {
     EXPECT_TRUE(verdict.decided) << verdict.effect;
-    if (verdict.on) on.insert(verdict.effect);
+    if (verdict.on && verdict.effect != "near") on.insert(verdict.effect);
   }
   std::string names;
   for (const std::string& name : on) names += (names.empty() ? "" : ",") + name;
@@ -90,6 +92,29 @@ TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
   for (std::size_t i = 0; i < truth.size(); ++i) {
     EXPECT_NEAR(inspection.stops[i], truth[i] - mean, 0.1) << posed.images[i].name;
   }
+}
+
+TEST(Inspect, RaysBeginBeforeWhateverACameraSees) {
+  const test::ScratchFolder folder;
+  sample::WriteSample(folder.path(), Small(Occasion::kNothing));
+  const sfm::PosedImages posed =
+      sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
+  double nearest = 1e9;
+  for (const sfm::PosedImage& image : posed.images) {
+    const std::string stem = image.name.substr(0, image.name.find('.'));
+    for (const float depth :
+         ReadImage(folder.path() / "truth" / (stem + ".depth.exr"), false).pixels) {
+      if (depth > 0) nearest = std::min(nearest, static_cast<double>(depth));
+    }
+  }
+  for (const Verdict& verdict : Inspect(posed).verdicts) {
+    if (verdict.effect != "near") continue;
+    EXPECT_LT(verdict.figure, nearest * sfm::NormalizeScene(posed).scale);
+    EXPECT_GT(verdict.figure, 0.3 * nearest * sfm::NormalizeScene(posed).scale);
+    EXPECT_EQ(verdict.assignment.find("march.near_distance=0."), 0u);
+    return;
+  }
+  FAIL() << "no verdict on where rays begin";
 }
 
 TEST(Inspect, WithoutSparsePointsOnlyFactsAreDecided) {
