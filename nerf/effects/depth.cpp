@@ -1,5 +1,6 @@
 #include "nerf/effects/depth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -38,23 +39,21 @@ void AddSeenPoints(const sfm::PosedImages& sparse,
   }
 }
 
-DepthCost CostOfDepth(double distance, double target, const DepthOptions& options) {
-  const double error = distance / target - 1, size = std::fabs(error), delta = options.delta;
-  if (size <= delta) return {0.5 * error * error / delta, error / (delta * target)};
-  return {size - 0.5 * delta, (error > 0 ? 1.0 : -1.0) / target};
+double CostOfDistance(double t, double target, const DepthOptions& options) {
+  const double size = std::fabs(t / target - 1), delta = options.delta;
+  const double cost = size <= delta ? 0.5 * size * size / delta : size - 0.5 * delta;
+  return std::min(cost, 1.0);
 }
 
-torch::Tensor DepthLoss(const torch::Tensor& distance, const torch::Tensor& target,
-                        const DepthOptions& options) {
-  TORCH_CHECK(distance.sizes() == target.sizes(), "DepthLoss: distance ", distance.sizes(),
-              " and target ", target.sizes(), " differ in shape");
-  const torch::Tensor known = target > 0;
-  // Where there is no target, any number but 0 will do: a division by it must not spoil gradients.
-  const torch::Tensor error = distance / torch::where(known, target, torch::ones_like(target)) - 1;
-  const torch::Tensor cost =
-      torch::huber_loss(error, torch::zeros_like(error), at::Reduction::None, options.delta) /
-      options.delta;
-  return options.weight * torch::where(known, cost, torch::zeros_like(cost)).mean();
+std::vector<float> CostsOfSamples(std::span<const float> t, std::span<const std::int64_t> ray,
+                                  std::span<const float> target, const DepthOptions& options) {
+  std::vector<float> costs(t.size());
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const auto of_ray = static_cast<double>(target[ray[i]]);
+    if (of_ray == 0) continue;
+    costs[i] = static_cast<float>(CostOfDistance(static_cast<double>(t[i]), of_ray, options));
+  }
+  return costs;
 }
 
 }  // namespace nerf

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <torch/torch.h>
-
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "nerf/data/dataset.h"
@@ -12,9 +12,11 @@
 namespace nerf {
 
 // Distances that structure from motion knows, for captures of few photographs, which alone leave
-// open where matter stands. Some rays go through sparse points, and each is asked to see as far as
-// its point stands. Source: Deng et al. 2022, "Depth-supervised NeRF", with Huber's loss of the
-// relative error in place of a square, for some points are wrong.
+// open where matter stands. Some rays go through sparse points, and their light is asked to come
+// from there:
+//   loss = weight / R * sum over those rays of (sum_i w_i cost_i + T_N)
+// Source: after Deng et al. 2022, "Depth-supervised NeRF", which compares a ray's weights with a
+// normal distribution about its point; Huber's loss bounds the pull of points that are wrong.
 
 // Gives each view that is trained on the points that it sees: those that three photographs have
 // seen within two pixels, in the pixel to which its camera projects them.
@@ -22,17 +24,15 @@ namespace nerf {
 void AddSeenPoints(const sfm::PosedImages& sparse,
                    const sfm::SceneNormalization& normalized_from_world, Dataset& data);
 
-// What one ray's error costs, and how the cost changes with the distance that the ray sees:
-//   Huber's loss of e = distance / target - 1, by DepthOptions::delta
-// A ray that sees nothing at all has the distance 0, and is drawn to see something.
-struct DepthCost {
-  double value = 0, derivative = 0;
-};
-DepthCost CostOfDepth(double distance, double target, const DepthOptions& options);
+// What it costs that light comes from a distance t where a point stands at `target`: Huber's loss
+// of t / target - 1, at most 1.
+double CostOfDistance(double t, double target, const DepthOptions& options);
 
-// weight times the sum of the costs of the rays that have a target, over all rays; by autograd.
-//   distance  [R] sum w t of each ray    target  [R] normalized units, 0: none
-torch::Tensor DepthLoss(const torch::Tensor& distance, const torch::Tensor& target,
-                        const DepthOptions& options);
+// The cost of each sample of a batch, 0 on rays without a target. Each part of a ray's light pays
+// for where it comes from, and light from nowhere pays 1: a mean distance that is right would be as
+// cheap in fog before and behind the point.
+//   t, ray  [S], as in PackedSamples    target  [R] normalized units, 0: none
+std::vector<float> CostsOfSamples(std::span<const float> t, std::span<const std::int64_t> ray,
+                                  std::span<const float> target, const DepthOptions& options);
 
 }  // namespace nerf

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "nerf/effects/background.h"
+#include "nerf/effects/depth.h"
 #include "nerf/effects/exposure.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
@@ -31,13 +32,13 @@ struct FusedEngine::Worker {
   PixelLoss pixels;
   StageSeconds seconds;  // of the thread
   std::vector<float> dL_dsigma, dL_dradiance, dL_dbackground;
-  std::vector<float> background;  // gradients, as BackgroundMap::raw
+  std::vector<float> background;      // gradients, as BackgroundMap::raw
+  std::vector<float> costs, weights;  // [S] of the samples, where distances are learned
 };
 
 FusedEngine::FusedEngine(EngineParts parts) : parts_(std::move(parts)), forward_(parts_) {
   pixel_model_.loss = parts_.loss;
   pixel_model_.robust = parts_.robust;
-  pixel_model_.depth = parts_.depth;
   if (parts_.exposure) pixel_model_.saturates = parts_.exposure->Saturates();
 }
 
@@ -58,22 +59,49 @@ void FusedEngine::Refresh() {
   }
 }
 
+// As nerf/effects/depth.h defines it. On the way back the samples' costs stand for their distances,
+// which no other loss asks about.
+void FusedEngine::AddDepthLoss(const TargetBatch& batch, std::int64_t first, Worker& worker) const {
+  const FusedTile& tile = worker.tile;
+  const std::int64_t count = tile.Rays(), size = tile.samples.Size();
+  const double weight = parts_.depth->weight;
+  const auto slope = static_cast<float>(weight / static_cast<double>(batch.rays.Size()));
+  worker.costs = CostsOfSamples(tile.samples.t, tile.ray, batch.distance, *parts_.depth);
+  worker.weights.resize(size);
+  kernels::WeightsForward<float>(tile.ray_begin, tile.field.density.sigma, tile.samples.dt,
+                                 worker.weights, 0, count);
+  for (std::int64_t r = 0; r < count; ++r) {
+    if (batch.distance[first + r] == 0) continue;
+    auto paid = static_cast<double>(1 - tile.opacity[r]);
+    for (std::int64_t i = tile.ray_begin[r]; i < tile.ray_begin[r + 1]; ++i) {
+      paid += static_cast<double>(worker.weights[i] * worker.costs[i]);
+    }
+    worker.pixels.loss += 3 * weight * paid;  // the sum is over rays and channels
+    worker.pixels.dL_ddepth[r] = slope;
+    worker.pixels.dL_dopacity[r] = -slope;
+  }
+}
+
 // From the pixels of a tile back to the field.
 void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
                            std::span<float> ray_error) const {
   FusedTile& tile = worker.tile;
   const std::int64_t count = tile.Rays(), size = tile.samples.Size();
-  if (!worker.pixels.Add(pixel_model_, batch, first, tile.rgb, tile.depth, ray_error)) {
+  if (!worker.pixels.Add(pixel_model_, batch, first, tile.rgb, ray_error)) {
     throw NonFiniteError(
         "the loss is not finite: " +
         DescribeNonFinite(tile, std::span(batch.rgb).subspan(3 * first, 3 * count), first));
+  }
+  kernels::RaySegments<float> segments = tile.Segments(batch.rays, first);
+  if (parts_.depth && !batch.distance.empty()) {
+    AddDepthLoss(batch, first, worker);
+    segments.t = worker.costs;
   }
   worker.dL_dbackground.resize(3 * count);
   worker.dL_dsigma.resize(size);
   worker.dL_dradiance.resize(3 * size);
   kernels::CompositeBackward<float>(
-      tile.Segments(batch.rays, first),
-      {worker.pixels.dL_drgb, worker.pixels.dL_dopacity, worker.pixels.dL_ddepth},
+      segments, {worker.pixels.dL_drgb, worker.pixels.dL_dopacity, worker.pixels.dL_ddepth},
       {worker.dL_dsigma, worker.dL_dradiance, worker.dL_dbackground}, 0, count);
   if (parts_.background) {
     for (std::int64_t r = 0; r < count; ++r) {

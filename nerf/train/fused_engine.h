@@ -27,6 +27,7 @@ class FusedEngine : public Engine {
   void Refresh();
   RenderOutput RenderRays(const RayBatch& rays) const;
   StepResult LearnFrom(const TargetBatch& batch);
+  void AddDepthLoss(const TargetBatch& batch, std::int64_t first, Worker& worker) const;
   void Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
                 std::span<float> ray_error) const;
 

@@ -152,6 +152,24 @@ RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
   return result;
 }
 
+// As nerf/effects/depth.h defines it: what the samples cost is rendered like a colour, before the
+// cost of seeing nothing.
+torch::Tensor LibTorchEngine::DepthLoss(const TargetBatch& batch, const Evaluated& out) const {
+  const torch::Dtype dtype = parts_.field->Dtype();
+  const std::int64_t count = batch.rays.Size(), size = out.samples.Size();
+  const std::vector<float> costs =
+      CostsOfSamples(out.samples.t, out.samples.ray, batch.distance, *parts_.depth);
+  const torch::Tensor of_sample = TensorOf(costs, {size, 1}, dtype).expand({size, 3}).clone();
+  const torch::Tensor of_nothing =
+      (TensorOf(batch.distance, {count, 1}, dtype) > 0).to(dtype).expand({count, 3}).clone();
+  const torch::Tensor paid =
+      RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong), out.field.sigma,
+                   of_sample, TensorOf(out.samples.dt, {size}, dtype),
+                   TensorOf(out.samples.t, {size}, dtype), of_nothing)
+          .rgb;
+  return parts_.depth->weight * paid.mean();
+}
+
 StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   if (batch.rays.Size() == 0) return {};  // the mean over nothing is no number
   const Evaluated out = Evaluate(batch.rays);
@@ -164,9 +182,7 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   }
   torch::Tensor loss = ColorLoss(rgb, target, parts_.loss, robust_);
   if (parts_.depth && !batch.distance.empty()) {
-    loss = loss + DepthLoss(out.pixels.depth,
-                            TensorOf(batch.distance, {batch.rays.Size()}, loss.scalar_type()),
-                            *parts_.depth);
+    loss = loss + DepthLoss(batch, out);
   }
   StepResult result;
   result.loss = loss.item<double>();

@@ -24,6 +24,7 @@ class LibTorchEngine : public Engine {
 
  private:
   struct Evaluated;
+  torch::Tensor DepthLoss(const TargetBatch& batch, const Evaluated& out) const;
   Evaluated Evaluate(const RayBatch& rays);
   PackedSamples VisibleSamples(const PackedSamples& samples);
   using DensityFunction = torch::Tensor (RadianceField::*)(const torch::Tensor&);

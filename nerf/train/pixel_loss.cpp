@@ -3,8 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "nerf/effects/depth.h"
-
 namespace nerf {
 namespace {
 
@@ -27,8 +25,7 @@ void PixelLoss::Clear(const PixelModel& model) {
 }
 
 bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int64_t first,
-                    std::span<const float> rgb, std::span<const float> distance,
-                    std::span<float> ray_error) {
+                    std::span<const float> rgb, std::span<float> ray_error) {
   const auto count = static_cast<std::int64_t>(rgb.size() / 3);
   const double channels = 3.0 * static_cast<double>(batch.rays.Size());
   dL_drgb.resize(3 * count);
@@ -61,13 +58,6 @@ bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int6
       dL_drgb[3 * r + c] =
           static_cast<float>(pull * dL_dshown[c] * static_cast<double>(gain ? gain[c] : 1.0f));
       if (gain) dL_dlog_gain[photograph + c] += pull * dL_dshown[c] * shown[c];
-    }
-    if (model.depth && !batch.distance.empty() && batch.distance[first + r] > 0) {
-      const DepthCost cost =
-          CostOfDepth(static_cast<double>(distance[r]),
-                      static_cast<double>(batch.distance[first + r]), *model.depth);
-      of_ray += 3 * model.depth->weight * cost.value;
-      dL_ddepth[r] = static_cast<float>(3 * model.depth->weight * cost.derivative / channels);
     }
     of_tile += of_ray;
     squared_error += squared;

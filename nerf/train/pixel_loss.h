@@ -16,13 +16,12 @@ namespace nerf {
 struct PixelModel {
   LossOptions loss;
   std::optional<RobustOptions> robust;
-  std::optional<DepthOptions> depth;
   std::vector<float> gain;  // [photographs,3] of Exposure; empty where that is not simulated
   bool saturates = false;   // where it is: as Exposure::Saturates
 };
 
-// What the pixels of a tile cost, and which way each should change: Exposure, ColorLoss, DepthLoss
-// and their derivatives in plain loops, for FusedEngine.
+// What the pixels of a tile cost, and which way each should change: Exposure, ColorLoss and their
+// derivatives in plain loops, for FusedEngine.
 struct PixelLoss {
   double loss = 0, squared_error = 0;         // sums over rays and channels, so far
   std::vector<double> dL_dlog_gain;           // as gain, so far
@@ -34,11 +33,10 @@ struct PixelLoss {
   // Compares the pixels of the rays from `first` on with what the batch says of them. The loss of a
   // batch is the mean over its rays and channels.
   //   rgb        [R,3] of the tile
-  //   distance   [R] of the tile, sum w t
   //   ray_error  [rays of the batch] as StepResult::ray_error
   // Returns false where the loss of the tile is not finite.
   bool Add(const PixelModel& model, const TargetBatch& batch, std::int64_t first,
-           std::span<const float> rgb, std::span<const float> distance, std::span<float> ray_error);
+           std::span<const float> rgb, std::span<float> ray_error);
 };
 
 }  // namespace nerf

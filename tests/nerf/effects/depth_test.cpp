@@ -10,7 +10,6 @@
 #include "nerf/sample/sample_folder.h"
 #include "sfm/colmap_model.h"
 #include "tests/support/analytic_capture.h"
-#include "tests/support/central_differences.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_training.h"
 #include "tests/support/two_engines.h"
@@ -54,31 +53,16 @@ test::TwoEngines WithDistances(const std::optional<DepthOptions>& depth) {
   return e;
 }
 
-TEST(DepthLoss, IsHubersOfTheRelativeError) {
+TEST(DepthLoss, OfASampleIsHubersOfItsRelativeError) {
   const DepthOptions options = {0.1, 2.0, 0.1};
-  EXPECT_EQ(CostOfDepth(3, 3, options).value, 0);
-  EXPECT_NEAR(CostOfDepth(3.15, 3, options).value, 0.5 * 0.05 * 0.05 / 0.1, 1e-12);
-  EXPECT_NEAR(CostOfDepth(0, 3, options).value, 1 - 0.05, 1e-12);
-  // Its derivative.
-  for (const double distance : {0.0, 2.0, 2.9, 3.1, 5.0}) {
-    const double h = 1e-6, above = CostOfDepth(distance + h, 3, options).value,
-                 below = CostOfDepth(distance - h, 3, options).value;
-    EXPECT_NEAR(CostOfDepth(distance, 3, options).derivative, (above - below) / (2 * h), 1e-6);
-  }
-  // Over all rays, those without a distance among them.
-  const torch::Tensor loss = DepthLoss(torch::tensor({3.15, 7.0}, torch::kDouble),
-                                       torch::tensor({3.0, 0.0}, torch::kDouble), options);
-  EXPECT_NEAR(loss.item<double>(), 2 * CostOfDepth(3.15, 3, options).value / 2, 1e-12);
-}
-
-TEST(DepthLoss, GradientsMatchCentralDifferencesAndAreFiniteWithoutATarget) {
-  const torch::Tensor target = torch::tensor({0.0, 1.0, 2.0, 0.5, 0.0}, torch::kDouble);
-  const torch::Tensor distance =
-      torch::tensor({0.0, 1.02, 0.0, 0.7, 3.0}, torch::kDouble).requires_grad_(true);
-  test::ExpectGradientMatchesCentralDifferences([&] { return DepthLoss(distance, target, {}); },
-                                                distance, 1e-6, 1e-7);
-  EXPECT_EQ(distance.grad()[0].item<double>(), 0);
-  EXPECT_EQ(distance.grad()[4].item<double>(), 0);
+  EXPECT_EQ(CostOfDistance(3, 3, options), 0);
+  EXPECT_NEAR(CostOfDistance(3.15, 3, options), 0.5 * 0.05 * 0.05 / 0.1, 1e-12);
+  EXPECT_NEAR(CostOfDistance(0, 3, options), 1 - 0.05, 1e-12);
+  EXPECT_EQ(CostOfDistance(30, 3, options), 1);
+  const std::vector<float> t = {3, 0, 7};
+  const std::vector<std::int64_t> ray = {0, 0, 1};
+  const std::vector<float> target = {3, 0};  // of the second ray nothing is known
+  EXPECT_EQ(CostsOfSamples(t, ray, target, options), (std::vector<float>{0, 0.95f, 0}));
 }
 
 TEST(DepthLoss, MeansTheSameInBothEngines) {
@@ -138,7 +122,8 @@ TEST(SeenPoints, AreWorthADecibelAndMoreWherePhotographsAreFew) {
   const FewPhotographs few;
   const SceneFacts scene = FactsOf(few.data, few.normalized_from_world);
   const auto psnr = [&](const std::string& effect) {
-    const Config config = test::TinyConfig(600, {"effects.depth=" + effect});
+    const Config config =
+        test::TinyConfig(600, {"march.near_distance=1", "effects.depth=" + effect});
     return test::PsnrOver(test::Trained(config, scene, few.data), few.data.validation);
   };
   const double without = psnr("null"), with = psnr("{}");

@@ -25,8 +25,8 @@ struct Fixture {
   std::shared_ptr<LibTorchEngine> engine;
   TargetBatch batch;
 
-  explicit Fixture(torch::Dtype dtype, double stop_transmittance = 1e-9,
-                   bool with_proposal = false) {
+  explicit Fixture(torch::Dtype dtype, double stop_transmittance = 1e-9, bool with_proposal = false,
+                   const std::optional<DepthOptions>& depth = {}) {
     kernels::HashGridOptions encoding;
     encoding.levels = 3;
     encoding.log2_table_size = 9;
@@ -64,6 +64,7 @@ struct Fixture {
     parts.march = march;
     parts.proposal_options = proposal_options;
     parts.gradient_scaling.full_distance = 0;
+    parts.depth = depth;
     engine = std::make_shared<LibTorchEngine>(parts);
     constexpr int kRays = 6;
     batch.rays.Resize(kRays);
@@ -80,9 +81,8 @@ struct Fixture {
   }
 };
 
-// From the rays to the loss through march, encoding, networks and compositing, in double.
-TEST(LibTorchEngine, GradientsOfTheWholePathMatchCentralDifferences) {
-  Fixture f(torch::kDouble);
+// From the rays to the loss through march, encoding, networks and compositing.
+void ExpectGradientsOfTheWholePath(Fixture& f) {
   const auto loss = [&] {
     f.field->zero_grad();
     return f.engine->AccumulateGradients(f.batch).loss;
@@ -106,6 +106,17 @@ TEST(LibTorchEngine, GradientsOfTheWholePathMatchCentralDifferences) {
       EXPECT_NEAR(gradients[p.key()][i].item<double>(), numeric, 1e-6 * (1 + std::fabs(numeric)));
     }
   }
+}
+
+TEST(LibTorchEngine, GradientsOfTheWholePathMatchCentralDifferences) {
+  Fixture f(torch::kDouble);
+  ExpectGradientsOfTheWholePath(f);
+}
+
+TEST(LibTorchEngine, GradientsOfKnownDistancesMatchCentralDifferences) {
+  Fixture f(torch::kDouble, 1e-4, false, DepthOptions{0.1, 1.0, 0.05});
+  f.batch.distance = {2.0f, 0.0f, 1.5f, 2.5f, 2.0f, 3.0f};
+  ExpectGradientsOfTheWholePath(f);
 }
 
 TEST(LibTorchEngine, FloatAgreesWithDouble) {
