@@ -1,6 +1,5 @@
 #include "nerf/effects/depth.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -40,9 +39,8 @@ void AddSeenPoints(const sfm::PosedImages& sparse,
 }
 
 double CostOfDistance(double t, double target, const DepthOptions& options) {
-  const double size = std::fabs(t / target - 1), delta = options.delta;
-  const double cost = size <= delta ? 0.5 * size * size / delta : size - 0.5 * delta;
-  return std::min(cost, 1.0);
+  const double error = t / target - 1, square = error * error;
+  return square / (square + options.delta * options.delta);
 }
 
 std::vector<float> CostsOfSamples(std::span<const float> t, std::span<const std::int64_t> ray,

@@ -16,7 +16,8 @@ namespace nerf {
 // from there:
 //   loss = weight / R * sum over those rays of (sum_i w_i cost_i + T_N)
 // Source: after Deng et al. 2022, "Depth-supervised NeRF", which compares a ray's weights with a
-// normal distribution about its point; Huber's loss bounds the pull of points that are wrong.
+// normal distribution about its point; the cost of Geman and McClure 1985 lets points that are
+// wrong pull little.
 
 // Gives each view that is trained on the points that it sees: those that three photographs have
 // seen within two pixels, in the pixel to which its camera projects them.
@@ -24,8 +25,9 @@ namespace nerf {
 void AddSeenPoints(const sfm::PosedImages& sparse,
                    const sfm::SceneNormalization& normalized_from_world, Dataset& data);
 
-// What it costs that light comes from a distance t where a point stands at `target`: Huber's loss
-// of t / target - 1, at most 1.
+// What it costs that light comes from a distance t where a point stands at `target`:
+// e^2 / (e^2 + delta^2) with e = t / target - 1. Far from the point as much as seeing nothing, 1:
+// were it cheaper there, it would draw fog before the camera.
 double CostOfDistance(double t, double target, const DepthOptions& options);
 
 // The cost of each sample of a batch, 0 on rays without a target. Each part of a ray's light pays

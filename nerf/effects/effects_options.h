@@ -39,7 +39,7 @@ struct RobustOptions {
 struct DepthOptions {
   double share = 0.1;   // of the rays, which go through points
   double weight = 0.1;  // of their distances' loss against that of colours
-  double delta = 0.05;  // relative error from which on a point pulls no harder
+  double delta = 0.1;   // relative error that costs half of the most
 
   void Check() const;
 };

@@ -37,7 +37,7 @@ constexpr double kFar = 8;          // radii of what the cameras look at
 constexpr double kPassing = 0.02;   // share of sightings that show something else
 constexpr double kSomethingElse = 0.35;  // log light, and four times what is usual
 constexpr double kNearest = 0.01;        // share of sightings that may be nearer than "the nearest"
-constexpr double kShareOfTheWay = 0.5;   // to them, in which nothing stands
+constexpr double kShareOfTheWay = 0.7;   // to them, in which nothing stands
 constexpr double kFewPhotographs = 15;   // before which a point stands
 constexpr double kSteps = 2.0 / 255;     // spread of one colour, as files round it
 
@@ -195,7 +195,7 @@ Verdict JudgeDepth(const sfm::PosedImages& posed) {
   return verdict;
 }
 
-// Where rays may begin: whatever stands nearer to a camera than half of the way to the nearest
+// Where rays may begin: whatever stands nearer to a camera than most of the way to the nearest
 // points is fog that nobody has seen.
 Verdict JudgeNear(const sfm::PosedImages& posed) {
   const sfm::SceneNormalization normalized = sfm::NormalizeScene(posed);
