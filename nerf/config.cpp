@@ -27,11 +27,16 @@ void to_json(json& j, const ViewOptions&) { j = json::object(); }
 void from_json(const json&, ViewOptions&) {}
 void to_json(json& j, const ExposureOptions&) { j = json::object(); }
 void from_json(const json&, ExposureOptions&) {}
+void to_json(json& j, const UnboundedOptions&) { j = json::object(); }
+void from_json(const json&, UnboundedOptions&) {}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PosesOptions, rate)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FootprintOptions, pixels)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BackgroundOptions, resolution)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaskOptions, meaning)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RobustOptions, scale)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DepthOptions, share, weight, delta)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EffectsOptions, view, background, exposure, masks, robust, depth)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EffectsOptions, poses, unbounded, footprint, view, background,
+                                   exposure, masks, robust, depth)
 
 // Each options struct's keys, once, for reading and writing.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataOptions, downscale, test_every, validation_images, memory_mb)
@@ -87,6 +92,9 @@ std::string JoinKeys(const json& object) {
 const json& EffectsWithDefaults() {
   static const json all = [] {
     EffectsOptions effects;
+    effects.poses.emplace();
+    effects.unbounded.emplace();
+    effects.footprint.emplace();
     effects.view.emplace();
     effects.background.emplace();
     effects.exposure.emplace();
@@ -217,6 +225,7 @@ Config Checked(const json& document, const std::string& where) {
   if (const json::array_t changes = json::diff(document, json(config)); !changes.empty()) {
     throw sfm::InputError("{}: {} is out of range", where, changes[0]["path"].get<std::string>());
   }
+  config.march.unbounded = config.effects.unbounded.has_value();
   CheckEncoding("encoding", config.encoding);
   CheckEncoding("proposal.encoding", config.proposal.encoding);
   config.proposal.Check();

@@ -14,6 +14,7 @@
 #include "nerf/commands/commands.h"
 #include "nerf/commands/effects_choice.h"
 #include "nerf/commands/interrupt.h"
+#include "nerf/commands/refined_poses.h"
 #include "nerf/commands/threads.h"
 #include "nerf/commands/training_input.h"
 #include "nerf/config.h"
@@ -217,7 +218,9 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
       trainer = std::make_unique<Trainer>(config, scene, data, run, SpentOf(config, watch));
     }
   }
-  Report(trainer->Run(StopOnInterrupt()), config.train, run);
+  const TrainSummary summary = trainer->Run(StopOnInterrupt());
+  ReportRefinedPoses(trainer->GetModel(), posed, run);
+  Report(summary, config.train, run);
 }
 
 void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads,
@@ -238,7 +241,9 @@ void ResumeRun(const TrainArguments& arguments, const fs::path& run, int threads
   PrintDataPlan(posed, model.config.data, threads);
   const Dataset data = LoadOrWarn(posed, model.config, model.scene.normalized_from_world, run);
   Trainer trainer(checkpoint, data, run, watch.Seconds());
-  Report(trainer.Run(StopOnInterrupt()), model.config.train, run);
+  const TrainSummary summary = trainer.Run(StopOnInterrupt());
+  ReportRefinedPoses(trainer.GetModel(), posed, run);
+  Report(summary, model.config.train, run);
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ View MakeView(const sfm::PosedImages& posed, const sfm::PosedImage& image, Photo
   View view;
   view.name = image.name;
   view.camera = Downscaled(posed.cameras[image.camera], downscale);
+  view.lens = image.camera;
   view.normalized_from_camera = normalized_from_world.NormalizedFromCamera(image.world_from_camera);
   CheckCameraCentre(view.normalized_from_camera.translation(), image.name);
   view.seed = static_cast<std::uint64_t>(&image - posed.images.data());

@@ -54,6 +54,7 @@ struct View {
   std::string name;
   sfm::Camera camera;                        // of the downscaled image
   Eigen::Isometry3d normalized_from_camera;  // OpenCV axes
+  std::int64_t lens = 0;                     // which camera of the input took it
   std::vector<Eigen::half> rgba;             // [held,4], straight alpha
   std::uint64_t seed = 0;                    // of the choice
   std::vector<std::uint32_t> whole;          // pixels to choose from, rising; empty: all

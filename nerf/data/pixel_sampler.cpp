@@ -29,6 +29,7 @@ bool SetRay(RayBatch& rays, std::int64_t r, const sfm::Camera& camera,
   const Eigen::Vector3d& o = normalized_from_camera.translation();
   Eigen::Map<Eigen::Vector3f>(&rays.direction[3 * r]) = d.cast<float>();
   Eigen::Map<Eigen::Vector3f>(&rays.origin[3 * r]) = o.cast<float>();
+  rays.spread[r] = static_cast<float>(std::max(0.0, direction->z()) / FocalLength(camera));
   return true;
 }
 
@@ -87,6 +88,7 @@ PixelSampler::Drawn PixelSampler::Draw(std::uint64_t bits) const {
 TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uint64_t step) const {
   TargetBatch batch;
   batch.rays.Resize(rays);
+  batch.rays.spread.resize(rays);
   batch.rgb.resize(3 * rays);
   batch.photograph.resize(rays);
   if (errors_) batch.cell.resize(rays);
@@ -138,6 +140,7 @@ ViewRays RaysOfPixels(const sfm::Camera& camera, const Eigen::Isometry3d& normal
   ViewRays out;
   const auto count = static_cast<std::int64_t>(pixels.size());
   out.rays.Resize(count);
+  out.rays.spread.resize(count);
   out.valid.assign(count, 1);
   ParallelFor(count, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t r = begin; r < end; ++r) {

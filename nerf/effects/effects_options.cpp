@@ -33,7 +33,19 @@ void DepthOptions::Check() const {
   }
 }
 
+void PosesOptions::Check() const {
+  if (rate >= 0 && rate <= 1) return;
+  throw sfm::InputError("config: effects.poses.rate is {}; use 0 to 1", rate);
+}
+
+void FootprintOptions::Check() const {
+  if (pixels >= 0 && pixels <= 8) return;
+  throw sfm::InputError("config: effects.footprint.pixels is {}; use 0 to 8", pixels);
+}
+
 void EffectsOptions::Check() const {
+  if (poses) poses->Check();
+  if (footprint) footprint->Check();
   if (background) background->Check();
   if (masks) masks->Check();
   if (robust) robust->Check();

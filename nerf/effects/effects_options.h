@@ -44,9 +44,31 @@ struct DepthOptions {
   void Check() const;
 };
 
+// Poses and focal lengths that are a little wrong (nerf/effects/poses.h).
+struct PosesOptions {
+  double rate = 0.05;  // of learning, in radians and normalized units, for each unit of the field's
+
+  void Check() const;
+};
+
+// Pixels that see much of a surface or little of it, where cameras stand near and far
+// (nerf/effects/footprint.h).
+struct FootprintOptions {
+  double pixels = 1;  // the width of what a pixel averages; 0: a point
+
+  void Check() const;
+};
+
+// Matter beyond what the cameras look at, to any distance. Without it rays are cut to the unit ball
+// about the scene, in which nothing is contracted.
+struct UnboundedOptions {};
+
 // The effects that a scene may call for, in the order in which light meets them. A block that is
 // there is an effect that is simulated; one that is not there costs nothing.
 struct EffectsOptions {
+  std::optional<PosesOptions> poses;
+  std::optional<UnboundedOptions> unbounded = UnboundedOptions();
+  std::optional<FootprintOptions> footprint;
   std::optional<ViewOptions> view = ViewOptions();
   std::optional<BackgroundOptions> background;
   std::optional<ExposureOptions> exposure;

@@ -21,7 +21,7 @@ struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
                                              Span<scalar_t>(encoded), first, last);
       });
     });
-    ctx->save_for_backward({positions});
+    ctx->save_for_backward({positions, table});
     ctx->saved_data["layout"] = reinterpret_cast<std::int64_t>(layout);
     ctx->saved_data["entries"] = table.size(0);
     return encoded;
@@ -29,7 +29,8 @@ struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
 
   static torch::autograd::variable_list backward(torch::autograd::AutogradContext* ctx,
                                                  torch::autograd::variable_list grads) {
-    const torch::Tensor positions = ctx->get_saved_variables()[0];
+    const torch::autograd::variable_list saved = ctx->get_saved_variables();
+    const torch::Tensor &positions = saved[0], &table = saved[1];
     const auto* layout =
         reinterpret_cast<const kernels::HashGridLayout*>(ctx->saved_data["layout"].toInt());
     const torch::Tensor dL_dencoded = grads[0].contiguous();
@@ -43,7 +44,19 @@ struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
                         Span<scalar_t>(dL_dtable), static_cast<int>(first), static_cast<int>(last));
                   });
     });
-    return {dL_dtable, torch::Tensor(), torch::Tensor()};
+    if (!ctx->needs_input_grad(1)) return {dL_dtable, torch::Tensor(), torch::Tensor()};
+    torch::Tensor dL_dposition = torch::zeros_like(positions);
+    const std::vector<float> ones(layout->levels.size(), 1.0f);
+    AT_DISPATCH_FLOATING_TYPES(dL_dencoded.scalar_type(), "hash_encode_position", [&] {
+      ParallelFor(positions.size(0), kSamplesWorthAThread,
+                  [&](std::int64_t first, std::int64_t last) {
+                    kernels::HashEncodePositionBackward<scalar_t>(
+                        *layout, Span<const scalar_t>(table), Span<const scalar_t>(positions),
+                        Span<const scalar_t>(dL_dencoded), layout->OutputSize(), ones,
+                        Span<scalar_t>(dL_dposition), first, last);
+                  });
+    });
+    return {dL_dtable, dL_dposition, torch::Tensor()};
   }
 };
 

@@ -54,25 +54,29 @@ std::vector<float> RadianceField::LevelWeights() const {
 }
 
 // The encoded positions with the levels beyond the detail faded to 0.
-torch::Tensor RadianceField::Encode(const torch::Tensor& positions) {
-  const torch::Tensor encoded = hash_encoding_->forward(positions);
+torch::Tensor RadianceField::Encode(const torch::Tensor& positions, const torch::Tensor& shares) {
+  torch::Tensor encoded = hash_encoding_->forward(positions);
+  if (shares.defined()) {
+    encoded = encoded * shares.repeat_interleave(hash_encoding_->Layout().features, 1);
+  }
   if (detail_ >= 1) return encoded;
   const torch::Tensor weights = torch::tensor(LevelWeights(), encoded.options());
   return encoded * weights.repeat_interleave(hash_encoding_->Layout().features);
 }
 
-torch::Tensor RadianceField::ContractedDensity(const torch::Tensor& positions) {
-  const torch::Tensor out = density_network_->forward(Encode(positions));
+torch::Tensor RadianceField::ContractedDensity(const torch::Tensor& positions,
+                                               const torch::Tensor& shares) {
+  const torch::Tensor out = density_network_->forward(Encode(positions, shares));
   return ActivateDensity(out.select(1, 0));
 }
 
-torch::Tensor RadianceField::Density(const torch::Tensor& positions) {
-  return ContractedDensity(positions) * RadialShrinkage(positions);
+torch::Tensor RadianceField::Density(const torch::Tensor& positions, const torch::Tensor& shares) {
+  return ContractedDensity(positions, shares) * RadialShrinkage(positions);
 }
 
 FieldOutput RadianceField::forward(const torch::Tensor& positions, const torch::Tensor& directions,
-                                   const torch::Tensor& ray) {
-  const torch::Tensor out = density_network_->forward(Encode(positions));
+                                   const torch::Tensor& ray, const torch::Tensor& shares) {
+  const torch::Tensor out = density_network_->forward(Encode(positions, shares));
   const torch::Tensor geometry = out.slice(1, 1);
   torch::Tensor color_input = geometry;
   if (color_model_ == ColorModel::kByDirection) {

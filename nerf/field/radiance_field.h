@@ -29,18 +29,20 @@ class RadianceField : public torch::nn::Module {
                 ColorModel color_model = ColorModel::kByDirection);
 
   // positions [S,3] in the unit cube -> [S], 1 / normalized scene unit
-  torch::Tensor Density(const torch::Tensor& positions);
+  //   shares  [S, levels] of what levels give that counts (nerf/effects/footprint.h); undefined:
+  //   all
+  torch::Tensor Density(const torch::Tensor& positions, const torch::Tensor& shares = {});
   // The same in 1 / unit of contracted space, which is what the network says: outside the unit ball
   // Density is that times 1/r^2. So a ray to infinity crosses a finite optical depth from the start
   // on, and light from its end, the background, still teaches what stands before it.
-  torch::Tensor ContractedDensity(const torch::Tensor& positions);
+  torch::Tensor ContractedDensity(const torch::Tensor& positions, const torch::Tensor& shares = {});
 
   //   positions   [S,3] in the unit cube
   //   directions  [R,3] unit vectors, one a ray
   //   ray         [S] int64, the ray of each sample
-  // Differentiable in the parameters.
+  // Differentiable in the parameters and the positions.
   FieldOutput forward(const torch::Tensor& positions, const torch::Tensor& directions,
-                      const torch::Tensor& ray);
+                      const torch::Tensor& ray, const torch::Tensor& shares = {});
 
   // How much detail the field may show, from 0 (the coarsest levels alone, no dependence on the
   // direction) to 1 (everything, the state of a new field). Shape is found while only coarse
@@ -60,7 +62,7 @@ class RadianceField : public torch::nn::Module {
   const Mlp& ColorNetwork() const { return *color_network_; }
 
  private:
-  torch::Tensor Encode(const torch::Tensor& positions);
+  torch::Tensor Encode(const torch::Tensor& positions, const torch::Tensor& shares);
 
   ColorEncoding encoding_;
   ColorModel color_model_;

@@ -13,6 +13,7 @@ template <class Real>
 struct Cell {
   std::uint32_t entry[8];
   Real weight[8];
+  Real along[3][2];  // of each axis, of which the weights are products
 };
 
 // The number of features and the kind of level are template arguments so that the loops over
@@ -39,7 +40,7 @@ inline Cell<Real> FindCell(const HashGridLevel& level, const Real* position) {
   const Real wx[2] = {Real(1) - fraction[0], fraction[0]};
   const Real wy[2] = {Real(1) - fraction[1], fraction[1]};
   const Real wz[2] = {Real(1) - fraction[2], fraction[2]};
-  Cell<Real> cell;
+  Cell<Real> cell = {{}, {}, {{wx[0], wx[1]}, {wy[0], wy[1]}, {wz[0], wz[1]}}};
   for (std::uint32_t k = 0; k < 8; ++k) {
     const std::uint32_t dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
     cell.entry[k] = kDense ? x[dx] + y[dy] + z[dz] : (x[dx] ^ y[dy] ^ z[dz]) & (level.size - 1);
@@ -71,6 +72,29 @@ void BackwardLevel(const HashGridLevel& level, const Real* positions, const Real
       Real* entry = dL_dtable + static_cast<std::int64_t>(cell.entry[k]) * kFeatures;
       for (int f = 0; f < kFeatures; ++f) entry[f] += cell.weight[k] * dL_dencoded[i * stride + f];
     }
+  }
+}
+
+template <class Real, int kFeatures, bool kDense>
+void PositionBackwardLevel(const HashGridLevel& level, const Real* table, const Real* positions,
+                           const Real* dL_dencoded, std::int64_t row, Real level_weight,
+                           Real* dL_dposition, std::int64_t first, std::int64_t last) {
+  const Real slope = level_weight * static_cast<Real>(level.resolution);
+  for (std::int64_t i = first; i < last; ++i) {
+    const Cell<Real> cell = FindCell<Real, kDense>(level, positions + 3 * i);
+    Real sum[3] = {};
+    for (int k = 0; k < 8; ++k) {
+      const Real* entry = table + static_cast<std::int64_t>(cell.entry[k]) * kFeatures;
+      Real dL_dweight = 0;
+      for (int f = 0; f < kFeatures; ++f) dL_dweight += dL_dencoded[i * row + f] * entry[f];
+      const int d[3] = {k & 1, k >> 1 & 1, k >> 2};
+      for (int axis = 0; axis < 3; ++axis) {
+        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        const Real others = cell.along[b][d[b]] * cell.along[c][d[c]];
+        sum[axis] += d[axis] == 1 ? dL_dweight * others : -dL_dweight * others;
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) dL_dposition[3 * i + axis] += slope * sum[axis];
   }
 }
 
@@ -156,12 +180,33 @@ void HashEncodeBackward(const HashGridLayout& layout, std::span<const Real> posi
   }
 }
 
-#define NERF_INSTANTIATE(Real)                                                          \
-  template void HashEncodeForward(const HashGridLayout&, std::span<const Real>,         \
-                                  std::span<const Real>, std::span<Real>, std::int64_t, \
-                                  std::int64_t);                                        \
-  template void HashEncodeBackward(const HashGridLayout&, std::span<const Real>,        \
-                                   std::span<const Real>, std::span<Real>, int, int);
+template <class Real>
+void HashEncodePositionBackward(const HashGridLayout& layout, std::span<const Real> table,
+                                std::span<const Real> positions, std::span<const Real> dL_dencoded,
+                                std::int64_t row, std::span<const float> level_weight,
+                                std::span<Real> dL_dposition, std::int64_t first,
+                                std::int64_t last) {
+  for (std::size_t l = 0; l < layout.levels.size(); ++l) {
+    const HashGridLevel& level = layout.levels[l];
+    if (level_weight[l] == 0) continue;
+    Specialize(layout.features, level.dense, [&](auto features, auto dense) {
+      PositionBackwardLevel<Real, features.value, dense.value>(
+          level, table.data() + level.offset * features.value, positions.data(),
+          dL_dencoded.data() + l * features.value, row, static_cast<Real>(level_weight[l]),
+          dL_dposition.data(), first, last);
+    });
+  }
+}
+
+#define NERF_INSTANTIATE(Real)                                                                    \
+  template void HashEncodeForward(const HashGridLayout&, std::span<const Real>,                   \
+                                  std::span<const Real>, std::span<Real>, std::int64_t,           \
+                                  std::int64_t);                                                  \
+  template void HashEncodeBackward(const HashGridLayout&, std::span<const Real>,                  \
+                                   std::span<const Real>, std::span<Real>, int, int);             \
+  template void HashEncodePositionBackward(                                                       \
+      const HashGridLayout&, std::span<const Real>, std::span<const Real>, std::span<const Real>, \
+      std::int64_t, std::span<const float>, std::span<Real>, std::int64_t, std::int64_t);
 NERF_INSTANTIATE(float)
 NERF_INSTANTIATE(double)
 #undef NERF_INSTANTIATE

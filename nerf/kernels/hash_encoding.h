@@ -60,4 +60,17 @@ void HashEncodeBackward(const HashGridLayout& layout, std::span<const Real> posi
                         std::span<const Real> dL_dencoded, std::span<Real> dL_dtable,
                         int first_level, int last_level);
 
+// How the encoding changes with the position: adds dL/dposition of samples [first, last). Across
+// the faces of cells the encoding has a kink; there it is the slope of the cell that holds the
+// position.
+//   dL_dencoded   rows of `row` numbers, row >= layout.OutputSize()
+//   level_weight  [levels] by which what a level gives was multiplied; where 0 it is not read
+//   dL_dposition  [N,3], added to
+template <class Real>
+void HashEncodePositionBackward(const HashGridLayout& layout, std::span<const Real> table,
+                                std::span<const Real> positions, std::span<const Real> dL_dencoded,
+                                std::int64_t row, std::span<const float> level_weight,
+                                std::span<Real> dL_dposition, std::int64_t first,
+                                std::int64_t last);
+
 }  // namespace nerf::kernels

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nerf/effects/footprint.h"
 #include "nerf/field/activations.h"
 #include "nerf/field/density.h"
 #include "nerf/field/tensor_span.h"
@@ -81,6 +82,11 @@ void TileDensity::ContractedDensity(std::span<const float> positions, DensityTil
   tile.activations.Resize(network_, samples);
   kernels::HashEncodeTile(hash_.Layout(), Span<const float>(hash_.Table()).data(), positions.data(),
                           samples, level_weights_, tile.activations.rows[0], Row());
+  tile.shares.clear();
+  if (!tile.footprint.empty()) {
+    tile.shares = LevelShares(hash_.Layout(), tile.footprint);
+    MultiplyByShares(samples, tile);
+  }
   timer.Lap(tile.seconds.encoding);
   network_.Forward(samples, tile.activations.rows);
   tile.sigma.resize(samples);
@@ -88,6 +94,20 @@ void TileDensity::ContractedDensity(std::span<const float> positions, DensityTil
   kernels::TruncatedExp(tile.sigma, static_cast<float>(kLogDensityBias),
                         static_cast<float>(kExpLimit));
   timer.Lap(tile.seconds.networks);
+}
+
+// Forward the encodings, on the way back their gradients.
+void TileDensity::MultiplyByShares(std::int64_t samples, DensityTile& tile) const {
+  const std::int64_t levels = static_cast<std::int64_t>(hash_.Layout().levels.size());
+  const int features = hash_.Layout().features;
+  float* const rows = tile.activations.rows[0];
+  for (std::int64_t i = 0; i < samples; ++i) {
+    for (std::int64_t l = 0; l < levels; ++l) {
+      const float share = tile.shares[i * levels + l];
+      if (share == 1) continue;
+      for (int f = 0; f < features; ++f) rows[i * Row() + l * features + f] *= share;
+    }
+  }
 }
 
 void TileDensity::Density(std::span<const float> positions, DensityTile& tile) const {
@@ -111,6 +131,10 @@ void TileDensity::Keep(std::span<const std::int64_t> kept, DensityTile& tile) co
       float* const rows = tile.activations.rows[l];
       std::copy_n(rows + from * width, width, rows + to * width);
     }
+    if (!tile.shares.empty()) {
+      const std::size_t levels = hash_.Layout().levels.size();
+      std::copy_n(&tile.shares[from * levels], levels, &tile.shares[to * levels]);
+    }
   }
   tile.sigma.resize(kept.size());
 }
@@ -124,6 +148,7 @@ void TileDensity::Backward(std::int64_t samples, std::span<const float> position
   }
   network_.Backward(samples, tile.activations.rows, gradients.network);
   timer.Lap(tile.seconds.networks);
+  if (!tile.shares.empty()) MultiplyByShares(samples, tile);
   const float* const encoded = tile.activations.rows[0];
   gradients.position.insert(gradients.position.end(), positions.begin(),
                             positions.begin() + 3 * samples);
@@ -135,6 +160,14 @@ void TileDensity::Clear(DensityGradients& gradients) const {
   gradients.network.assign(network_.GradientSize(), 0.0f);
   gradients.position.clear();
   gradients.dL_dencoded.clear();
+}
+
+void TileDensity::AddToPositions(const DensityGradients& gradients,
+                                 std::span<float> dL_dposition) const {
+  kernels::HashEncodePositionBackward<float>(
+      hash_.Layout(), Span<const float>(hash_.Table()), gradients.position, gradients.dL_dencoded,
+      Row(), level_weights_, dL_dposition, 0,
+      static_cast<std::int64_t>(gradients.position.size() / 3));
 }
 
 void TileDensity::AddToParameters(std::span<const DensityGradients* const> gradients) {

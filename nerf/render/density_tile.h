@@ -22,7 +22,9 @@ struct TileRows {
 
 // Densities of the samples of a tile, and what the way back needs.
 struct DensityTile {
-  std::vector<float> sigma;  // [S]
+  std::vector<float> footprint;  // [S] to be set before, where pixels see patches; or empty
+  std::vector<float> shares;     // [S, levels] that footprints leave of the encoding; or empty
+  std::vector<float> sigma;      // [S]
   TileRows activations;
   StageSeconds seconds;  // so far, for encoding and networks
 };
@@ -54,7 +56,8 @@ class TileDensity {
   // Takes over what others change between batches. The table is read where it is.
   void Refresh(std::vector<float> level_weights);
 
-  // positions [S,3] in the unit cube -> sigma in 1 / unit of contracted space
+  // positions [S,3] in the unit cube -> sigma in 1 / unit of contracted space. The tile may bring
+  // footprints.
   void ContractedDensity(std::span<const float> positions, DensityTile& tile) const;
   // The same in 1 / normalized scene unit.
   void Density(std::span<const float> positions, DensityTile& tile) const;
@@ -73,11 +76,15 @@ class TileDensity {
                 DensityGradients& gradients) const;
 
   void Clear(DensityGradients& gradients) const;
+  // What reached the positions of the samples that were gathered, through the encoding.
+  //   dL_dposition  [S,3], added to
+  void AddToPositions(const DensityGradients& gradients, std::span<float> dL_dposition) const;
   // Adds what the threads gathered, in their order, to the gradients of the LibTorch parameters.
   void AddToParameters(std::span<const DensityGradients* const> gradients);
 
  private:
   int Row() const;  // floats between the encodings of two samples
+  void MultiplyByShares(std::int64_t samples, DensityTile& tile) const;
 
   const HashEncoding& hash_;
   const Mlp& module_;

@@ -43,6 +43,7 @@ void LendRays(ViewRays& tile) {
       if (tile.valid[r] || lender == count) continue;
       std::copy_n(&tile.rays.origin[3 * lender], 3, &tile.rays.origin[3 * r]);
       std::copy_n(&tile.rays.direction[3 * lender], 3, &tile.rays.direction[3 * r]);
+      tile.rays.spread[r] = tile.rays.spread[lender];
     }
   }
 }

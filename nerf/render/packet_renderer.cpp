@@ -5,6 +5,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "nerf/effects/footprint.h"
 #include "nerf/parallel.h"
 #include "nerf/stopwatch.h"
 
@@ -54,11 +55,13 @@ PacketRenderer::PacketRenderer(std::shared_ptr<RadianceField> field,
                                std::shared_ptr<OccupancyGrid> grid,
                                std::shared_ptr<ProposalField> proposal, const MarchOptions& march,
                                ProposalOptions proposal_options, const RenderQuality& quality,
-                               kernels::Precision precision)
+                               kernels::Precision precision,
+                               const std::optional<FootprintOptions>& footprint)
     : field_(std::move(field), precision),
       placement_(std::move(grid), std::move(proposal), march, std::move(proposal_options), quality),
       march_(march),
-      quality_(quality) {}
+      quality_(quality),
+      footprint_(footprint) {}
 
 // Sets the rays of a tile at their first samples.
 void PacketRenderer::Begin(const RayBatch& rays, std::int64_t first, std::int64_t last,
@@ -113,6 +116,22 @@ void PacketRenderer::Shade(const RayBatch& rays, std::int64_t first, Tile& tile)
   }
 }
 
+// Densities of the samples that the tile goes on by.
+void PacketRenderer::Evaluate(const RayBatch& rays, std::int64_t first, Tile& tile) const {
+  tile.field.density.footprint.clear();  // the tile may be another renderer's
+  if (footprint_) {
+    std::vector<std::int64_t> ray;
+    std::vector<float> t;
+    for (std::size_t i = 0; i < tile.sample.size(); ++i) {
+      ray.push_back(first + tile.ray[i]);
+      t.push_back(tile.placed.samples.t[tile.sample[i]]);
+    }
+    tile.field.density.footprint = Footprints(rays, ray, t, *footprint_);
+  }
+  field_.Density().Density(tile.position, tile.field.density);
+  tile.evaluated += static_cast<std::int64_t>(tile.sample.size());
+}
+
 // Takes every ray that is still alive a few samples further.
 void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const {
   tile.position.clear();
@@ -129,8 +148,7 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
       tile.ray.push_back(k);
     }
   }
-  field_.Density().Density(tile.position, tile.field.density);
-  tile.evaluated += static_cast<std::int64_t>(tile.sample.size());
+  Evaluate(rays, first, tile);
 
   tile.kept.clear();
   tile.kept_ray.clear();
@@ -168,6 +186,8 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
 // Rays that met less than half a share, through thin fog, take the colour of their heaviest sample.
 void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const {
   tile.position.clear();
+  tile.sample.clear();
+  tile.ray.clear();
   tile.kept.clear();
   tile.kept_ray.clear();
   for (std::size_t k = 0; k < tile.rays.size(); ++k) {
@@ -175,13 +195,14 @@ void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& 
     if (!(ray.shaded == 0 && ray.met > 0)) continue;
     const auto position = tile.placed.samples.position.begin() + 3 * ray.heaviest;
     tile.position.insert(tile.position.end(), position, position + 3);
+    tile.sample.push_back(ray.heaviest);
+    tile.ray.push_back(static_cast<std::int64_t>(k));
     tile.kept.push_back(static_cast<std::int64_t>(tile.kept.size()));
     tile.kept_ray.push_back(static_cast<std::int64_t>(k));
   }
   if (tile.kept.empty()) return;
   tile.kept_weight.assign(tile.kept.size(), 1.0f);
-  field_.Density().Density(tile.position, tile.field.density);
-  tile.evaluated += static_cast<std::int64_t>(tile.kept.size());
+  Evaluate(rays, first, tile);
   Shade(rays, first, tile);
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
+#include "nerf/effects/effects_options.h"
 #include "nerf/render/field_tile.h"
 #include "nerf/render/packet_placement.h"
 #include "nerf/render/ray_renderer.h"
@@ -22,7 +24,8 @@ class PacketRenderer : public RayRenderer {
   PacketRenderer(std::shared_ptr<RadianceField> field, std::shared_ptr<OccupancyGrid> grid,
                  std::shared_ptr<ProposalField> proposal, const MarchOptions& march,
                  ProposalOptions proposal_options, const RenderQuality& quality,
-                 kernels::Precision precision = kernels::Precision::kFloat);
+                 kernels::Precision precision = kernels::Precision::kFloat,
+                 const std::optional<FootprintOptions>& footprint = {});
 
   RenderOutput Render(const RayBatch& rays) override;
 
@@ -32,12 +35,14 @@ class PacketRenderer : public RayRenderer {
   void BeginMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Shade(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const;
+  void Evaluate(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const;
 
   TileField field_;
   PacketPlacement placement_;
   MarchOptions march_;
   RenderQuality quality_;
+  std::optional<FootprintOptions> footprint_;
 };
 
 }  // namespace nerf

@@ -25,8 +25,7 @@ float RayPlace(float t, const MarchOptions& options) {
 void EqualIntervals(const RayBatch& rays, std::int64_t r, const MarchOptions& options,
                     std::span<float> edges) {
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
-  const auto near = static_cast<float>(options.near_distance);
-  const auto far = static_cast<float>(options.far_distance);
+  const auto [near, far] = RangeOfRay(rays, r, options);
   // Knots stand evenly in place, where speed times dt/dplace is smooth as far as the eye can see:
   // beyond the unit ball the contraction slows down as fast as 1/t places reach out. The place of
   // a far enough `far` rounds to 2, whose distance is infinite: it is `far` all the same.

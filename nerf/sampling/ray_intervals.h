@@ -14,7 +14,7 @@ float RayPlace(float t, const MarchOptions& options);
 
 // Cuts ray r from near to far into intervals of equal length in contracted space, found by
 // quadrature along the ray: where the field's resolution is fine, intervals are short.
-//   edges  [N+1] written, rising distances; edges[0] is near_distance, edges[N] far_distance; the
+//   edges  [N+1] written, rising distances; edges[0] and edges[N] are the ends of RangeOfRay; the
 //          inner ones are shifted by the ray's jitter - 1/2 of an interval
 void EqualIntervals(const RayBatch& rays, std::int64_t r, const MarchOptions& options,
                     std::span<float> edges);

@@ -40,13 +40,27 @@ Eigen::Vector3f InCube(const Eigen::Vector3f& x) {
 
 }  // namespace
 
+RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& options) {
+  const auto near = static_cast<float>(options.near_distance);
+  const auto far = static_cast<float>(options.far_distance);
+  if (options.unbounded) return {near, far};
+  const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
+  const float middle = -origin.dot(direction);
+  // From the point of the ray that is nearest to the centre, so that far cameras lose no digits.
+  const float aside = (origin + middle * direction).stableNorm();
+  if (!(aside < 1)) return {near, near};
+  const float half = std::sqrt((1 - aside) * (1 + aside));
+  const float begin = std::clamp(middle - half, near, far);
+  return {begin, std::clamp(middle + half, begin, far)};
+}
+
 void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
               const MarchOptions& options, RaySamples& out) {
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
   const float step = options.StepLength();
-  const auto far_distance = static_cast<float>(options.far_distance);
+  const auto [near_distance, far_distance] = RangeOfRay(rays, r, options);
   const float nearest = -origin.dot(direction);  // where the ray passes the centre
-  auto t = static_cast<float>(options.near_distance);
+  float t = near_distance;
   float fraction = 1.0f - rays.jitter[r];
   while (t < far_distance) {
     const float speed = Speed(origin + t * direction, direction);

@@ -18,6 +18,8 @@ struct MarchOptions {
   double far_distance = 100.0;       // last sample, in normalized scene units
   int steps_per_unit = 128;          // steps in a unit of contracted space
   double stop_transmittance = 1e-4;  // a ray ends where less light than this gets through
+  // What effects.unbounded says: whether there is anything outside the unit ball.
+  bool unbounded = true;
 
   void Check() const;
   float StepLength() const { return 1.0f / static_cast<float>(steps_per_unit); }
@@ -30,6 +32,15 @@ struct RaySamples {
 
   std::int64_t Size() const { return static_cast<std::int64_t>(t.size()); }
 };
+
+// The part of a ray on which samples are placed, near <= far.
+struct RayRange {
+  float near, far;
+};
+// From near_distance to far_distance; where the scene is bounded, within the unit ball, in which
+// the contraction is the identity. A ray that misses it has no length.
+//   r  of the batch
+RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& options);
 
 // Whether a proposal field places the samples.
 bool UsesProposal(const MarchOptions& options, bool scene_has_alpha);

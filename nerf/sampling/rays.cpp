@@ -24,6 +24,10 @@ void CheckRays(const RayBatch& rays) {
   const auto finite = [](std::span<const float> values) {
     return std::ranges::all_of(values, [](float v) { return std::isfinite(v); });
   };
+  if (!rays.spread.empty() && rays.spread.size() != rays.jitter.size()) {
+    throw std::invalid_argument(
+        fmt::format("{} spreads for {} rays", rays.spread.size(), rays.jitter.size()));
+  }
   for (std::int64_t r = 0; r < rays.Size(); ++r) {
     const std::span direction(&rays.direction[3 * r], 3);
     const double length =
@@ -36,6 +40,9 @@ void CheckRays(const RayBatch& rays) {
     if (!(std::fabs(length - 1) <= 1e-3)) wrong = "direction is no unit vector";
     if (!finite({&rays.background[3 * r], 3})) wrong = "background is not finite";
     if (!(rays.jitter[r] >= 0 && rays.jitter[r] <= 1)) wrong = "jitter is not in [0,1]";
+    if (!rays.spread.empty() && !(rays.spread[r] >= 0 && std::isfinite(rays.spread[r]))) {
+      wrong = "spread is not finite, or negative";
+    }
     if (wrong != nullptr) throw std::invalid_argument(fmt::format("ray {}: its {}", r, wrong));
   }
 }

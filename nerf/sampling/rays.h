@@ -13,6 +13,8 @@ struct RayBatch {
   std::vector<float> direction;   // [R,3] unit vectors
   std::vector<float> background;  // [R,3] what is seen where the ray meets nothing
   std::vector<float> jitter;      // [R] in [0,1]: where in its first step each ray starts
+  // [R] width of a pixel at distance 1 along its ray, >= 0; empty: rays of no pixels.
+  std::vector<float> spread;
 
   std::int64_t Size() const { return static_cast<std::int64_t>(jitter.size()); }
   void Resize(std::int64_t rays) {

@@ -19,6 +19,7 @@ namespace nerf {
 class Background;
 class Exposure;
 class OccupancyGrid;
+class Poses;
 class ProposalField;
 class RadianceField;
 
@@ -43,12 +44,14 @@ struct EngineParts {
   LossOptions loss;
   std::optional<RobustOptions> robust;
   std::optional<DepthOptions> depth;
+  std::optional<FootprintOptions> footprint;
   GradientScalingOptions gradient_scaling;
   // Of the networks' products in FusedEngine; LibTorchEngine is exact to float.
   kernels::Precision precision = kernels::Precision::kFloat;
   // Effects; null where they are not simulated.
   std::shared_ptr<Background> background;
   std::shared_ptr<Exposure> exposure;
+  std::shared_ptr<Poses> poses;
 };
 
 // Evaluates rays, with gradients or without. Two engines, one meaning: LibTorchEngine composes

@@ -8,9 +8,11 @@
 #include "nerf/effects/background.h"
 #include "nerf/effects/depth.h"
 #include "nerf/effects/exposure.h"
+#include "nerf/effects/poses.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
 #include "nerf/parallel.h"
+#include "nerf/render/ray_gradient.h"
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/stopwatch.h"
 #include "nerf/train/non_finite_error.h"
@@ -34,6 +36,9 @@ struct FusedEngine::Worker {
   std::vector<float> dL_dsigma, dL_dradiance, dL_dbackground;
   std::vector<float> background;      // gradients, as BackgroundMap::raw
   std::vector<float> costs, weights;  // [S] of the samples, where distances are learned
+  // [S] of all samples so far, where poses are refined.
+  std::vector<std::int64_t> ray;
+  std::vector<float> t, dL_dlog_sigma;
 };
 
 FusedEngine::FusedEngine(EngineParts parts) : parts_(std::move(parts)), forward_(parts_) {
@@ -128,6 +133,13 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
       for (int c = 0; c < 3; ++c) worker.dL_dradiance[3 * i + c] *= scale;
     }
   }
+  if (parts_.poses) {
+    worker.ray.insert(worker.ray.end(), tile.ray.begin(), tile.ray.begin() + size);
+    worker.t.insert(worker.t.end(), tile.samples.t.begin(), tile.samples.t.begin() + size);
+    for (std::int64_t i = 0; i < size; ++i) {
+      worker.dL_dlog_sigma.push_back(worker.dL_dsigma[i] * tile.field.density.sigma[i]);
+    }
+  }
   forward_.Field().Backward(size, tile.samples.position, worker.dL_dsigma, worker.dL_dradiance,
                             tile.field, worker.field);
 }
@@ -177,10 +189,39 @@ RenderOutput FusedEngine::RenderRays(const RayBatch& rays) const {
 StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
   CheckRays(batch.rays);
   Refresh();
-  if (!parts_.background) return LearnFrom(batch);
+  if (!parts_.background && !parts_.poses) return LearnFrom(batch);
   TargetBatch seen = batch;
-  seen.rays = WithBackground(batch.rays, background_);
-  return LearnFrom(seen);
+  const std::int64_t count = batch.rays.Size();
+  Poses::Moved moved;
+  if (parts_.poses) {
+    moved = parts_.poses->forward(TensorOf(batch.rays.origin, {count, 3}, torch::kFloat),
+                                  TensorOf(batch.rays.direction, {count, 3}, torch::kFloat),
+                                  TensorOf(batch.photograph, {count}, torch::kLong));
+    seen.rays = Poses::WithMoved(batch.rays, moved);
+  }
+  if (parts_.background) seen.rays = WithBackground(seen.rays, background_);
+  const StepResult result = LearnFrom(seen);
+  if (parts_.poses) {
+    const RayGradient gradient = GradientOfRays(seen.rays);
+    torch::autograd::backward({moved.origin, moved.direction},
+                              {TensorOf(gradient.origin, {count, 3}, torch::kFloat).clone(),
+                               TensorOf(gradient.direction, {count, 3}, torch::kFloat).clone()});
+  }
+  return result;
+}
+
+// What the samples of the batch that was learned from pass on to its rays.
+RayGradient FusedEngine::GradientOfRays(const RayBatch& rays) const {
+  RayGradient gradient = {std::vector<float>(rays.origin.size(), 0.0f),
+                          std::vector<float>(rays.direction.size(), 0.0f)};
+  // Each worker's rays are its own.
+  ParallelForEach(static_cast<std::int64_t>(workers_.size()), [&](std::int64_t k) {
+    const Worker& worker = workers_[k];
+    std::vector<float> dL_dposition(3 * worker.t.size(), 0.0f);
+    forward_.Field().Density().AddToPositions(worker.field.density, dL_dposition);
+    AddToRays(rays, worker.ray, worker.t, dL_dposition, worker.dL_dlog_sigma, gradient);
+  });
+  return gradient;
 }
 
 StepResult FusedEngine::LearnFrom(const TargetBatch& batch) {
@@ -195,6 +236,9 @@ StepResult FusedEngine::LearnFrom(const TargetBatch& batch) {
       Worker& worker = workers_[k];
       worker.pixels.Clear(pixel_model_);
       worker.background.assign(background_.raw.size(), 0.0f);
+      worker.ray.clear();
+      worker.t.clear();
+      worker.dL_dlog_sigma.clear();
       worker.tile.placed = worker.tile.shaded = 0;
       worker.tile.sampling_seconds = 0;
       worker.tile.field.density.seconds = {};

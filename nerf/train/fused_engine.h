@@ -9,6 +9,8 @@
 
 namespace nerf {
 
+struct RayGradient;
+
 // What LibTorchEngine defines, a tile of rays at a time: placing of samples, encoding, networks,
 // compositing, loss and the way back run one after the other while the tile's samples are in the
 // core's cache, with kernels of our own on LibTorch's parameters, in float.
@@ -27,6 +29,7 @@ class FusedEngine : public Engine {
   void Refresh();
   RenderOutput RenderRays(const RayBatch& rays) const;
   StepResult LearnFrom(const TargetBatch& batch);
+  RayGradient GradientOfRays(const RayBatch& rays) const;
   void AddDepthLoss(const TargetBatch& batch, std::int64_t first, Worker& worker) const;
   void Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
                 std::span<float> ray_error) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nerf/effects/footprint.h"
 #include "nerf/sampling/occupancy_grid.h"
 
 namespace nerf {
@@ -17,7 +18,10 @@ constexpr std::int64_t kTileSamples = 256;
 }  // namespace
 
 FusedForward::FusedForward(const EngineParts& parts)
-    : grid_(parts.grid), march_(parts.march), field_(parts.field, parts.precision) {
+    : grid_(parts.grid),
+      march_(parts.march),
+      footprint_(parts.footprint),
+      field_(parts.field, parts.precision) {
   if (parts.proposal) proposal_.emplace(parts.proposal, parts.proposal_options, parts.march);
 }
 
@@ -88,6 +92,9 @@ std::int64_t FusedForward::Run(const RayBatch& rays, std::int64_t first, std::in
   const std::int64_t end = PlaceSamples(rays, first, last, tile);
   timer.Lap(tile.sampling_seconds);
   tile.placed += tile.samples.Size();
+  if (footprint_) {
+    tile.field.density.footprint = Footprints(rays, tile.ray, tile.samples.t, *footprint_);
+  }
   field_.Density().Density(tile.samples.position, tile.field.density);
   KeepVisible(tile);
   tile.shaded += tile.samples.Size();

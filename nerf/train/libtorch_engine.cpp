@@ -6,10 +6,13 @@
 #include "nerf/effects/background.h"
 #include "nerf/effects/depth.h"
 #include "nerf/effects/exposure.h"
+#include "nerf/effects/footprint.h"
+#include "nerf/effects/poses.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
 #include "nerf/parallel.h"
 #include "nerf/render/proposal_sampling.h"
+#include "nerf/render/ray_gradient.h"
 #include "nerf/render/volume_rendering.h"
 #include "nerf/train/losses.h"
 #include "nerf/train/non_finite_error.h"
@@ -69,8 +72,27 @@ void LibTorchEngine::SetProgress(double progress) {
   if (parts_.robust) robust_ = parts_.robust->At(progress);
 }
 
+// The patches that samples stand for; empty where they are points.
+std::vector<float> LibTorchEngine::FootprintsOf(const RayBatch& rays,
+                                                const PackedSamples& samples) const {
+  if (!parts_.footprint) return {};
+  return Footprints(rays, samples.ray, samples.t, *parts_.footprint);
+}
+
+torch::Tensor LibTorchEngine::SharesOf(std::span<const float> footprint) const {
+  const kernels::HashGridLayout& layout = parts_.field->Hash().Layout();
+  const std::vector<float> shares = LevelShares(layout, footprint);
+  return TensorOf(shares,
+                  {static_cast<std::int64_t>(footprint.size()),
+                   static_cast<std::int64_t>(layout.levels.size())},
+                  parts_.field->Dtype())
+      .clone();
+}
+
 // Densities without gradients, a chunk of positions at a time.
+//   footprint  [S], as FootprintOptions has it; or empty
 std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
+                                             std::span<const float> footprint,
                                              DensityFunction density) {
   const torch::NoGradGuard no_grad;
   const auto size = static_cast<std::int64_t>(positions.size() / 3);
@@ -80,7 +102,10 @@ std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
     const torch::Tensor chunk =
         torch::from_blob(const_cast<float*>(&positions[3 * first]), {count, 3})
             .to(parts_.field->Dtype());
-    const torch::Tensor part = (parts_.field.get()->*density)(chunk).to(torch::kFloat).contiguous();
+    const torch::Tensor shares =
+        footprint.empty() ? torch::Tensor() : SharesOf(footprint.subspan(first, count));
+    const torch::Tensor part =
+        (parts_.field.get()->*density)(chunk, shares).to(torch::kFloat).contiguous();
     std::copy_n(part.data_ptr<float>(), count, sigma.begin() + first);
   }
   return sigma;
@@ -88,8 +113,9 @@ std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
 
 // The samples in front of the point where a ray's transmittance falls below the bound: found from
 // densities alone and without gradients, so that colour and gradients are computed for no other.
-PackedSamples LibTorchEngine::VisibleSamples(const PackedSamples& samples) {
-  const std::vector<float> sigma = Densities(samples.position, &RadianceField::Density);
+PackedSamples LibTorchEngine::VisibleSamples(const RayBatch& rays, const PackedSamples& samples) {
+  const std::vector<float> sigma =
+      Densities(samples.position, FootprintsOf(rays, samples), &RadianceField::Density);
   std::vector<std::int64_t> kept(samples.Rays());
   ParallelFor(samples.Rays(), 64, [&](std::int64_t first, std::int64_t last) {
     kernels::CountVisible<float>(samples.ray_begin, sigma, samples.dt,
@@ -99,7 +125,9 @@ PackedSamples LibTorchEngine::VisibleSamples(const PackedSamples& samples) {
 }
 
 // A ray's way from its origin to its pixel.
-LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
+//   moved  the rays as refined poses have them, for gradients; null: constants
+LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays,
+                                                   const Poses::Moved* moved) {
   CheckRays(rays);
   const torch::Dtype dtype = parts_.field->Dtype();
   Evaluated out;
@@ -111,15 +139,22 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
     placed = MarchRays(rays, *parts_.grid, parts_.march);
   }
   out.marched = placed.Size();
-  out.samples = VisibleSamples(placed);
+  out.samples = VisibleSamples(rays, placed);
 
   const std::int64_t count = rays.Size();
   const std::int64_t size = out.samples.Size();
-  const torch::Tensor positions = TensorOf(out.samples.position, {size, 3}, dtype);
   const torch::Tensor directions = TensorOf(rays.direction, {count, 3}, dtype);
   const torch::Tensor ray = TensorOf(out.samples.ray, {size}, torch::kLong);
   const torch::Tensor t = TensorOf(out.samples.t, {size}, dtype);
-  out.field = parts_.field->forward(positions, directions, ray);
+  torch::Tensor positions = TensorOf(out.samples.position, {size, 3}, dtype);
+  if (moved) {
+    // The value to the last bit as samples have it, the gradient of how they came to stand there.
+    const torch::Tensor moving = SamplePositions(moved->origin, moved->direction, ray, t);
+    positions = positions + (moving - moving.detach());
+  }
+  const std::vector<float> footprint = FootprintsOf(rays, out.samples);
+  out.field = parts_.field->forward(positions, directions, ray,
+                                    footprint.empty() ? torch::Tensor() : SharesOf(footprint));
   ScaleGradients(out.field, t, parts_.gradient_scaling.full_distance);
 
   const torch::Tensor background = parts_.background ? parts_.background->forward(directions)
@@ -132,7 +167,7 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays) {
 
 RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
   const torch::NoGradGuard no_grad;
-  const Evaluated out = Evaluate(rays);
+  const Evaluated out = Evaluate(rays, nullptr);
   const auto to_vector = [](const torch::Tensor& tensor) {
     const torch::Tensor flat = tensor.to(torch::kFloat).contiguous();
     return std::vector<float>(flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel());
@@ -172,7 +207,20 @@ torch::Tensor LibTorchEngine::DepthLoss(const TargetBatch& batch, const Evaluate
 
 StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   if (batch.rays.Size() == 0) return {};  // the mean over nothing is no number
-  const Evaluated out = Evaluate(batch.rays);
+  const torch::Dtype dtype = parts_.field->Dtype();
+  const std::int64_t count = batch.rays.Size();
+  Evaluated out;
+  RayBatch refined;  // autograd reads it until the way back is over
+  if (parts_.poses) {
+    const Poses::Moved moved =
+        parts_.poses->forward(TensorOf(batch.rays.origin, {count, 3}, dtype),
+                              TensorOf(batch.rays.direction, {count, 3}, dtype),
+                              TensorOf(batch.photograph, {count}, torch::kLong));
+    refined = Poses::WithMoved(batch.rays, moved);
+    out = Evaluate(refined, &moved);
+  } else {
+    out = Evaluate(batch.rays, nullptr);
+  }
   const torch::Tensor target =
       TensorOf(batch.rgb, {batch.rays.Size(), 3}, out.pixels.rgb.scalar_type());
   torch::Tensor rgb = out.pixels.rgb;
@@ -211,7 +259,7 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
 void LibTorchEngine::UpdateOccupancy(std::int64_t step, std::uint64_t seed) {
   if (parts_.proposal) return;
   parts_.grid->Update(step, seed, [this](std::span<const float> positions) {
-    return Densities(positions, &RadianceField::ContractedDensity);
+    return Densities(positions, {}, &RadianceField::ContractedDensity);
   });
 }
 

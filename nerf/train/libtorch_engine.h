@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "nerf/effects/poses.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/render/proposal_sampling.h"
 #include "nerf/sampling/occupancy_grid.h"
@@ -25,10 +26,14 @@ class LibTorchEngine : public Engine {
  private:
   struct Evaluated;
   torch::Tensor DepthLoss(const TargetBatch& batch, const Evaluated& out) const;
-  Evaluated Evaluate(const RayBatch& rays);
-  PackedSamples VisibleSamples(const PackedSamples& samples);
-  using DensityFunction = torch::Tensor (RadianceField::*)(const torch::Tensor&);
-  std::vector<float> Densities(std::span<const float> positions, DensityFunction density);
+  Evaluated Evaluate(const RayBatch& rays, const Poses::Moved* moved);
+  PackedSamples VisibleSamples(const RayBatch& rays, const PackedSamples& samples);
+  std::vector<float> FootprintsOf(const RayBatch& rays, const PackedSamples& samples) const;
+  torch::Tensor SharesOf(std::span<const float> footprint) const;
+  using DensityFunction = torch::Tensor (RadianceField::*)(const torch::Tensor&,
+                                                           const torch::Tensor&);
+  std::vector<float> Densities(std::span<const float> positions, std::span<const float> footprint,
+                               DensityFunction density);
 
   EngineParts parts_;
   std::optional<RobustOptions> robust_;  // as it is now

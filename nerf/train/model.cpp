@@ -5,6 +5,7 @@
 
 #include "nerf/effects/background.h"
 #include "nerf/effects/exposure.h"
+#include "nerf/effects/poses.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/field/tensor_span.h"
@@ -27,12 +28,19 @@ json JsonFromScene(const SceneFacts& scene) {
   json rotation = json::array(), translation = json::array();
   for (int i = 0; i < 9; ++i) rotation.push_back(n.rotation(i / 3, i % 3));
   for (int i = 0; i < 3; ++i) translation.push_back(n.translation[i]);
+  json places = json::array();
+  for (const CameraPlace& p : scene.places) {
+    places.push_back({{"centre", {p.centre.x(), p.centre.y(), p.centre.z()}},
+                      {"axis", {p.axis.x(), p.axis.y(), p.axis.z()}},
+                      {"lens", p.lens}});
+  }
   return {{"encoding", scene.encoding == ColorEncoding::kSrgb ? "srgb" : "linear"},
           {"has_alpha", scene.has_alpha},
           {"scale", n.scale},
           {"rotation", rotation},
           {"translation", translation},
-          {"photographs", scene.photographs}};
+          {"photographs", scene.photographs},
+          {"places", places}};
 }
 
 SceneFacts SceneFromJson(const json& scene) {
@@ -40,6 +48,13 @@ SceneFacts SceneFromJson(const json& scene) {
   facts.encoding = scene.at("encoding") == "srgb" ? ColorEncoding::kSrgb : ColorEncoding::kLinear;
   facts.has_alpha = scene.at("has_alpha");
   facts.photographs = scene.value("photographs", std::vector<std::string>());
+  for (const json& place : scene.value("places", json::array())) {
+    CameraPlace p;
+    for (int i = 0; i < 3; ++i) p.centre[i] = place.at("centre").at(i);
+    for (int i = 0; i < 3; ++i) p.axis[i] = place.at("axis").at(i);
+    p.lens = place.at("lens");
+    facts.places.push_back(p);
+  }
   sfm::SceneNormalization& n = facts.normalized_from_world;
   n.scale = scene.at("scale");
   for (int i = 0; i < 9; ++i) n.rotation(i / 3, i % 3) = scene.at("rotation").at(i);
@@ -69,8 +84,12 @@ void CheckSizes(const Config& config, bool with_proposal, const Checkpoint& chec
 }  // namespace
 
 SceneFacts FactsOf(const Dataset& data, const sfm::SceneNormalization& normalized_from_world) {
-  SceneFacts facts = {data.encoding, data.has_alpha, normalized_from_world, {}, {}};
-  for (const View& view : data.train) facts.photographs.push_back(view.name);
+  SceneFacts facts = {data.encoding, data.has_alpha, normalized_from_world, {}, {}, {}};
+  for (const View& view : data.train) {
+    facts.photographs.push_back(view.name);
+    facts.places.push_back({view.normalized_from_camera.translation(),
+                            view.normalized_from_camera.linear().col(2), view.lens});
+  }
   return facts;
 }
 
@@ -103,6 +122,11 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
                                                 scene.encoding);
     if (!scene.exposure_stops.empty()) model.exposure->Start(scene.exposure_stops);
   }
+  if (config.effects.poses) {
+    model.poses = std::make_shared<Poses>(scene.places, *config.effects.poses);
+  } else {
+    model.scene.places.clear();  // nobody asks for them
+  }
   EngineParts parts;
   parts.field = model.field;
   parts.grid = model.grid;
@@ -113,8 +137,10 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   parts.gradient_scaling = config.gradient_scaling;
   parts.robust = config.effects.robust;
   parts.depth = config.effects.depth;
+  parts.footprint = config.effects.footprint;
   parts.background = model.background;
   parts.exposure = model.exposure;
+  parts.poses = model.poses;
   parts.precision = PrecisionOf(config);
   if (config.train.engine == "fused") {
     model.engine = std::make_shared<FusedEngine>(parts);
@@ -153,6 +179,7 @@ std::vector<std::pair<std::string, torch::Tensor>> NamedParameters(const Model& 
   if (model.proposal) add("proposal.", *model.proposal);
   if (model.background) add("background.", *model.background);
   if (model.exposure) add("exposure.", *model.exposure);
+  if (model.poses) add("poses.", *model.poses);
   return named;
 }
 

@@ -8,6 +8,7 @@
 
 #include "nerf/config.h"
 #include "nerf/data/image.h"
+#include "nerf/effects/camera_place.h"
 #include "nerf/kernels/mlp.h"
 #include "sfm/scene_normalization.h"
 
@@ -17,6 +18,7 @@ class Background;
 class Engine;
 class Exposure;
 class OccupancyGrid;
+class Poses;
 class ProposalField;
 class RadianceField;
 struct Checkpoint;
@@ -27,6 +29,7 @@ struct SceneFacts {
   bool has_alpha = false;
   sfm::SceneNormalization normalized_from_world;
   std::vector<std::string> photographs = {};  // that it is trained on, by name
+  std::vector<CameraPlace> places = {};       // where they were taken, for refinement of poses
   std::vector<double> exposure_stops = {};    // theirs, to begin with; empty: unknown. Not kept
 };
 
@@ -41,6 +44,7 @@ struct Model {
   std::shared_ptr<ProposalField> proposal;  // where it and not the grid places the samples
   std::shared_ptr<Background> background;   // where it is learned
   std::shared_ptr<Exposure> exposure;       // where photographs differ in it
+  std::shared_ptr<Poses> poses;             // where they are refined
   std::shared_ptr<Engine> engine;
 };
 

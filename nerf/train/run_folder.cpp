@@ -10,6 +10,7 @@ namespace fs = std::filesystem;
 
 fs::path CheckpointPath(const fs::path& run) { return run / "checkpoint.nerf"; }
 fs::path PosesPath(const fs::path& run) { return run / "transforms.json"; }
+fs::path RefinedPosesPath(const fs::path& run) { return run / "refined_transforms.json"; }
 fs::path ConfigPath(const fs::path& run) { return run / "config.json"; }
 fs::path MetricsPath(const fs::path& run) { return run / "metrics.jsonl"; }
 fs::path ColmapPath(const fs::path& run) { return run / "colmap"; }

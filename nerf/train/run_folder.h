@@ -13,10 +13,12 @@ namespace nerf {
 //   config.json      the configuration, every key
 //   metrics.jsonl    a line each validation
 //   colmap/          where poses were found from photographs
+//   refined_transforms.json  the same after refinement, where poses are refined
 //   sparse/          the input's sparse points, a COLMAP model, where distances are learned from
 //   them
 std::filesystem::path CheckpointPath(const std::filesystem::path& run);
 std::filesystem::path PosesPath(const std::filesystem::path& run);
+std::filesystem::path RefinedPosesPath(const std::filesystem::path& run);
 std::filesystem::path ConfigPath(const std::filesystem::path& run);
 std::filesystem::path MetricsPath(const std::filesystem::path& run);
 std::filesystem::path ColmapPath(const std::filesystem::path& run);

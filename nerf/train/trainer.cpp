@@ -65,7 +65,7 @@ struct Trainer::State {
                                                 Options().max_rays_per_batch)) {
     TORCH_CHECK(Options().target_psnr == 0 || !data.validation.empty(),
                 "Trainer: a target PSNR needs validation photographs");
-    if (model.exposure) CheckPhotographs();
+    if (model.exposure || model.poses) CheckPhotographs();
     if (!data.validation.empty()) {
       constexpr std::int64_t kValidationRays = 8192;
       validation = PixelSampler(data.validation).Sample(kValidationRays, Options().seed, 0);

@@ -32,6 +32,7 @@ TargetBatch Rays() {
       batch.rays.background[3 * r + c] = 0.5f;
     }
     batch.rays.jitter[r] = 0.5f;
+    batch.rays.spread.push_back(0.002f);
     batch.photograph.push_back(r % kPhotographs);
   }
   return batch;
@@ -41,7 +42,13 @@ TargetBatch Rays() {
 void Step(benchmark::State& state, const std::string& effect, const std::string& setting) {
   at::set_num_threads(NumThreads());
   SceneFacts scene;
-  for (int i = 0; i < kPhotographs; ++i) scene.photographs.push_back(std::to_string(i));
+  for (int i = 0; i < kPhotographs; ++i) {
+    scene.photographs.push_back(std::to_string(i));
+    CameraPlace place;
+    place.centre = {2 * std::sin(i), 2 * std::cos(i), 0.1 * i};
+    place.axis = -place.centre.normalized();
+    scene.places.push_back(place);
+  }
   const Config config = WithEffect(Config(), effect, setting);
   const Model model = MakeModel(config, scene);
   const TargetBatch batch = Rays();
@@ -56,6 +63,9 @@ NERF_STEP(without_view, "view", "null");
 NERF_STEP(with_background, "background", "{}");
 NERF_STEP(with_exposure, "exposure", "{}");
 NERF_STEP(with_robust, "robust", "{}");
+NERF_STEP(with_poses, "poses", "{}");
+NERF_STEP(with_footprint, "footprint", "{}");
+NERF_STEP(without_unbounded, "unbounded", "null");
 
 }  // namespace
 }  // namespace nerf

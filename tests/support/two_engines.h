@@ -11,6 +11,7 @@
 
 #include "nerf/effects/background.h"
 #include "nerf/effects/exposure.h"
+#include "nerf/effects/poses.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/sampling/occupancy_grid.h"
@@ -32,8 +33,10 @@ struct TwoEngines {
   ColorModel color_model = ColorModel::kByDirection;
   std::optional<RobustOptions> robust;
   std::optional<DepthOptions> depth;
+  std::optional<FootprintOptions> footprint;
   std::shared_ptr<Background> background;
   std::shared_ptr<Exposure> exposure;
+  std::shared_ptr<Poses> poses;
 
   std::shared_ptr<RadianceField> field;
   std::shared_ptr<OccupancyGrid> grid;
@@ -85,8 +88,10 @@ struct TwoEngines {
     parts.gradient_scaling = gradient_scaling;
     parts.robust = robust;
     parts.depth = depth;
+    parts.footprint = footprint;
     parts.background = background;
     parts.exposure = exposure;
+    parts.poses = poses;
     libtorch = std::make_unique<LibTorchEngine>(parts);
     fused = std::make_unique<FusedEngine>(parts);
     batch.rays.Resize(rays);
@@ -118,6 +123,7 @@ struct TwoEngines {
     if (proposal) take(*proposal, "proposal.");
     if (background) take(*background, "background.");
     if (exposure) take(*exposure, "exposure.");
+    if (poses) take(*poses, "poses.");
     return gradients;
   }
 

@@ -1,0 +1,138 @@
+#include "nerf/inspect/visual_hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "nerf/data/camera.h"
+#include "nerf/data/image_io.h"
+#include "nerf/parallel.h"
+#include "sfm/input_error.h"
+
+namespace nerf {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kCells = 64;   // along each axis of the cube
+constexpr double kHalf = 2;  // its half width
+constexpr double kCell = 2 * kHalf / kCells;
+// A cell that fewer photographs see, behind what they show, is not known to be empty, and nothing
+// speaks for matter there.
+constexpr int kFewestSights = 2, kShareOfSights = 10;  // the second: one of so many photographs
+constexpr double kMargin = 1.02;  // of the ball, so that nothing stands on its surface
+
+Vector3d Corner(int x, int y, int z) {
+  return Vector3d(x, y, z) * kCell - Vector3d::Constant(kHalf);
+}
+
+// How many pixels that are not transparent stand above and left of each corner: [h+1, w+1].
+std::vector<std::int32_t> OpaqueSums(const Image& photo) {
+  const std::size_t across = photo.width + 1;
+  std::vector<std::int32_t> sums(across * (photo.height + 1), 0);
+  for (int y = 0; y < photo.height; ++y) {
+    std::int32_t row = 0;
+    for (int x = 0; x < photo.width; ++x) {
+      row += photo.At(x, y)[3] > 0 ? 1 : 0;
+      sums[(y + 1) * across + x + 1] = sums[y * across + x + 1] + row;
+    }
+  }
+  return sums;
+}
+
+// What a photograph says of a cell.
+enum class Sight { kNotSeen, kEmpty, kMaybeMatter };
+
+Sight SightOf(const sfm::Camera& camera, const Eigen::Isometry3d& camera_from_normalized,
+              const std::vector<std::int32_t>& opaque, int cx, int cy, int cz) {
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (int k = 0; k < 8; ++k) {
+    const Vector3d x =
+        camera_from_normalized * Corner(cx + (k & 1), cy + (k >> 1 & 1), cz + (k >> 2));
+    const auto pixel = PixelFromPoint(camera, x);
+    if (!pixel) return Sight::kNotSeen;
+    low = low.cwiseMin(*pixel);
+    high = high.cwiseMax(*pixel);
+  }
+  if (low.x() < 0 || low.y() < 0 || high.x() >= camera.width || high.y() >= camera.height) {
+    return Sight::kNotSeen;
+  }
+  const auto x0 = static_cast<std::size_t>(low.x()), y0 = static_cast<std::size_t>(low.y());
+  const auto x1 = static_cast<std::size_t>(high.x()) + 1,
+             y1 = static_cast<std::size_t>(high.y()) + 1;
+  const std::size_t across = camera.width + 1;
+  const std::int32_t count = opaque[y1 * across + x1] - opaque[y0 * across + x1] -
+                             opaque[y1 * across + x0] + opaque[y0 * across + x0];
+  return count == 0 ? Sight::kEmpty : Sight::kMaybeMatter;
+}
+
+}  // namespace
+
+std::optional<Ball> BallAboutHull(const sfm::PosedImages& posed,
+                                  const sfm::SceneNormalization& normalized_from_world,
+                                  const std::function<void(int)>& read) {
+  // How many photographs see each cell, none of which sees it empty; or kEmpty.
+  constexpr int kEmpty = -1;
+  std::vector<int> seen(kCells * kCells * kCells, 0);
+  int done = 0;
+  for (const sfm::PosedImage& image : posed.images) {
+    if (read) read(++done);
+    const sfm::Camera& camera = posed.cameras[image.camera];
+    Image photo;
+    try {
+      photo = ReadImage(image.path, image.upright_by_exif);
+    } catch (const sfm::InputError&) {
+      continue;  // training names it and leaves it out
+    }
+    if (photo.channels != 4 || photo.width != camera.width || photo.height != camera.height)
+      continue;
+    const std::vector<std::int32_t> opaque = OpaqueSums(photo);
+    const Eigen::Isometry3d camera_from_normalized =
+        normalized_from_world.NormalizedFromCamera(image.world_from_camera).inverse();
+    ParallelForEach(kCells, [&](std::int64_t z) {
+      for (int y = 0; y < kCells; ++y) {
+        for (int x = 0; x < kCells; ++x) {
+          int& count = seen[(z * kCells + y) * kCells + x];
+          if (count == kEmpty) continue;
+          const Sight sight =
+              SightOf(camera, camera_from_normalized, opaque, x, y, static_cast<int>(z));
+          if (sight == Sight::kEmpty) count = kEmpty;
+          if (sight == Sight::kMaybeMatter) ++count;
+        }
+      }
+    });
+  }
+  const int fewest =
+      std::max(kFewestSights, static_cast<int>(posed.images.size()) / kShareOfSights);
+  Vector3d low = Vector3d::Constant(kHalf), high = -low;
+  std::vector<Vector3d> corners;
+  for (int z = 0; z < kCells; ++z) {
+    for (int y = 0; y < kCells; ++y) {
+      for (int x = 0; x < kCells; ++x) {
+        if (seen[(z * kCells + y) * kCells + x] < fewest) continue;
+        const int nearest = std::min({x, y, z}), farthest = std::max({x, y, z});
+        if (nearest == 0 || farthest == kCells - 1) return std::nullopt;
+        for (int k = 0; k < 8; ++k) {
+          corners.push_back(Corner(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)));
+          low = low.cwiseMin(corners.back());
+          high = high.cwiseMax(corners.back());
+        }
+      }
+    }
+  }
+  if (corners.empty()) return std::nullopt;
+  Ball ball = {(low + high) / 2, 0};
+  for (const Vector3d& x : corners) ball.radius = std::max(ball.radius, (x - ball.centre).norm());
+  ball.radius *= kMargin;
+  return ball;
+}
+
+sfm::SceneNormalization FittedTo(const Ball& ball, sfm::SceneNormalization normalized_from_world) {
+  normalized_from_world.scale /= ball.radius;
+  normalized_from_world.translation =
+      (normalized_from_world.translation - ball.centre) / ball.radius;
+  return normalized_from_world;
+}
+
+}  // namespace nerf

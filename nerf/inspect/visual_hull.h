@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+
+#include "sfm/posed_images.h"
+#include "sfm/scene_normalization.h"
+
+namespace nerf {
+
+struct Ball {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 1;
+};
+
+// The smallest ball about what the alpha of all photographs leaves: the visual hull, in cells of a
+// sixteenth of the normalized unit. A cell is empty where a photograph sees all of it and nothing
+// but transparent pixels there, and where hardly a photograph sees it.
+// Source: Laurentini 1994, "The visual hull concept for silhouette-based image understanding".
+//   returns  normalized frame; nullopt where cells are left at the border of the cube [-2,2]^3:
+//            then there may be matter beyond
+//   read     called with the number of photographs read
+// A photograph that cannot be read is left out.
+std::optional<Ball> BallAboutHull(const sfm::PosedImages& posed,
+                                  const sfm::SceneNormalization& normalized_from_world,
+                                  const std::function<void(int)>& read = {});
+
+// The frame in which a ball of the other is the unit ball.
+sfm::SceneNormalization FittedTo(const Ball& ball, sfm::SceneNormalization normalized_from_world);
+
+}  // namespace nerf

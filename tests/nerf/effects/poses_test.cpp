@@ -1,0 +1,155 @@
+#include "nerf/effects/poses.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "nerf/render/ray_gradient.h"
+#include "tests/support/central_differences.h"
+#include "tests/support/two_engines.h"
+
+namespace nerf {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<CameraPlace> Ring(int count, int lenses = 1) {
+  std::vector<CameraPlace> places;
+  for (int i = 0; i < count; ++i) {
+    const double a = 2.4 * i;
+    const Vector3d centre(2 * std::cos(a), 2 * std::sin(a), 0.4 + 0.2 * std::sin(3.0 * i));
+    places.push_back({centre, -centre.normalized(), i % lenses});
+  }
+  return places;
+}
+
+// Some refinement, of every photograph and lens.
+void Disturb(Poses& poses, double size) {
+  const torch::NoGradGuard no_grad;
+  torch::manual_seed(4);
+  for (torch::Tensor& p : poses.parameters()) p.normal_(0.0, size);
+}
+
+test::TwoEngines WithPoses(double size, bool with_proposal = false,
+                           std::shared_ptr<Background> background = nullptr) {
+  test::TwoEngines e;
+  e.poses = std::make_shared<Poses>(Ring(3, 2), PosesOptions());
+  e.background = std::move(background);
+  Disturb(*e.poses, size);
+  e.Make(60, with_proposal);
+  return e;
+}
+
+TEST(Poses, ChangeNoBitBeforeTheyAreRefined) {
+  test::TwoEngines off;
+  off.Make(60);
+  const test::TwoEngines neutral = WithPoses(0);
+  for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
+    const StepResult a = (off.*engine)->AccumulateGradients(off.batch);
+    const StepResult b = (neutral.*engine)->AccumulateGradients(neutral.batch);
+    EXPECT_EQ(a.loss, b.loss);
+    EXPECT_EQ(a.ray_error, b.ray_error);
+  }
+}
+
+TEST(Poses, MeanTheSameInBothEngines) {
+  WithPoses(0.2).ExpectTheSame();
+  WithPoses(0.2, true).ExpectTheSame();
+}
+
+TEST(Poses, GoTogetherWithALearnedBackground) {
+  const auto background = std::make_shared<Background>(BackgroundOptions{8}, ColorEncoding::kSrgb);
+  WithPoses(0.2, false, background).ExpectTheSame();
+}
+
+TEST(Poses, TurnRaysAboutTheirCamerasAndShiftThem) {
+  Poses poses(Ring(12), PosesOptions{1.0});
+  Disturb(poses, 0.3);
+  const torch::NoGradGuard no_grad;
+  const auto places = Ring(12);
+  for (std::int64_t i = 0; i < 12; ++i) {
+    Eigen::Isometry3d camera = Eigen::Isometry3d::Identity();
+    camera.translation() = places[i].centre;
+    camera.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), places[i].axis).toRotationMatrix();
+    const Eigen::Isometry3d refined = poses.Refined(i, camera);
+    // The pixel at the height and width of a long focal length: zoomed by the lens's factor.
+    const double f = std::exp(poses.LogFocals()[0].item<double>());
+    const Vector3d before = camera.linear() * Vector3d(0.3, -0.2, 1).normalized();
+    const Vector3d after = refined.linear() * Vector3d(0.3, -0.2, f).normalized();
+    const auto row = [](const Vector3d& v) {
+      return torch::tensor({{v.x(), v.y(), v.z()}}, torch::kFloat);
+    };
+    const Poses::Moved moved =
+        poses.forward(row(camera.translation()), row(before), torch::full({1}, i, torch::kLong));
+    EXPECT_LT((moved.origin - row(refined.translation())).abs().max().item<double>(), 1e-6);
+    EXPECT_LT((moved.direction - row(after)).abs().max().item<double>(), 1e-5);
+  }
+}
+
+TEST(Poses, CannotMoveTogether) {
+  const auto places = Ring(9);
+  Poses poses(places, PosesOptions{1.0});
+  const auto left_of = [&](const std::function<void(Vector3d, float*)>& move) {
+    const torch::NoGradGuard no_grad;
+    torch::Tensor twist = poses.parameters()[0];
+    twist.zero_();
+    Vector3d mean = Vector3d::Zero();
+    for (const CameraPlace& place : places) mean += place.centre / 9;
+    for (int i = 0; i < 9; ++i) move(places[i].centre - mean, twist[i].data_ptr<float>());
+    return poses.Twists().abs().max().item<double>();
+  };
+  EXPECT_LT(left_of([](Vector3d, float* t) { t[4] = 1; }), 1e-5);
+  EXPECT_LT(left_of([](Vector3d arm, float* t) {
+              for (int c = 0; c < 3; ++c) t[3 + c] = static_cast<float>(arm[c]);
+            }),
+            1e-5);
+  EXPECT_LT(left_of([](Vector3d arm, float* t) {
+              const Vector3d shift = Vector3d::UnitZ().cross(arm);
+              t[2] = 1;
+              for (int c = 0; c < 3; ++c) t[3 + c] = static_cast<float>(shift[c]);
+            }),
+            1e-5);
+  EXPECT_GT(left_of([](Vector3d arm, float* t) { t[3] = static_cast<float>(arm.y()); }), 0.1);
+}
+
+TEST(Poses, OfCamerasInOnePointMayStillTurn) {
+  std::vector<CameraPlace> places = Ring(5);
+  for (CameraPlace& place : places) place.centre.setZero();
+  Poses poses(places, PosesOptions{1.0});
+  Disturb(poses, 0.1);
+  const torch::Tensor twist = poses.Twists();
+  EXPECT_TRUE(torch::isfinite(twist).all().item<bool>());
+  EXPECT_GT(twist.slice(1, 0, 3).abs().max().item<double>(), 0.01);
+  EXPECT_LT(twist.slice(1, 0, 3).mean(0).abs().max().item<double>(), 1e-6);
+}
+
+// From the refinement through rays, contraction, encoding and networks to density and colour.
+TEST(Poses, GradientsMatchCentralDifferences) {
+  test::TwoEngines e = WithPoses(0.2);
+  e.field->to(torch::kDouble);
+  e.poses->to(torch::kDouble);
+  const std::int64_t count = 12, each = 6;
+  const auto of = [&](const std::vector<float>& values) {
+    return torch::from_blob(const_cast<float*>(values.data()), {count, 3}).to(torch::kDouble);
+  };
+  const torch::Tensor ray = torch::arange(count).repeat_interleave(each);
+  // Inside and outside the unit ball.
+  const torch::Tensor t = (torch::arange(count * each, torch::kDouble) * 0.77).remainder(4.0) + 0.3;
+  const torch::Tensor photograph = torch::arange(count).remainder(3);
+  const auto f = [&] {
+    const Poses::Moved moved =
+        e.poses->forward(of(e.batch.rays.origin), of(e.batch.rays.direction), photograph);
+    const FieldOutput out = e.field->forward(SamplePositions(moved.origin, moved.direction, ray, t),
+                                             of(e.batch.rays.direction), ray);
+    return (out.sigma.log1p() * torch::arange(count * each, torch::kDouble).cos()).sum() +
+           out.radiance.square().sum();
+  };
+  for (torch::Tensor parameter : e.poses->parameters()) {
+    test::ExpectGradientMatchesCentralDifferences(f, parameter, 1e-7, 2e-5);
+  }
+}
+
+}  // namespace
+}  // namespace nerf
