@@ -1,0 +1,20 @@
+#pragma once
+
+#include "nerf/inspect/verdict.h"
+#include "sfm/posed_images.h"
+
+namespace nerf {
+
+// What sparse points and cameras call for by where they are. There is at least one point.
+
+// The share of points far beyond what the cameras look at.
+Verdict JudgeBackground(const sfm::PosedImages& posed);
+
+// Whether photographs alone leave open where matter stands.
+Verdict JudgeDepth(const sfm::PosedImages& posed);
+
+// Where rays may begin: whatever stands nearer to a camera than most of the way to the nearest
+// points is fog that nobody has seen.
+Verdict JudgeNear(const sfm::PosedImages& posed);
+
+}  // namespace nerf
