@@ -62,6 +62,8 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
                                                      : JudgeExposure(exif.stops, "by their EXIF"));
     inspection.verdicts.push_back(Undecided("robust"));
     inspection.verdicts.push_back(Undecided("depth"));
+    inspection.verdicts.push_back(Undecided("poses"));
+    inspection.verdicts.push_back(Undecided("footprint"));
     return inspection;
   }
   const TrackColors colors = ReadTrackColors(posed, kNearby, read);
@@ -74,6 +76,8 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   inspection.verdicts.push_back(JudgeExposure(inspection.stops, "in the same points"));
   inspection.verdicts.push_back(JudgePassers(colors, fit));
   inspection.verdicts.push_back(JudgeDepth(posed));
+  inspection.verdicts.push_back(JudgePoses(posed));
+  inspection.verdicts.push_back(JudgeFootprint(posed));
   inspection.verdicts.push_back(JudgeNear(posed));
   return inspection;
 }
