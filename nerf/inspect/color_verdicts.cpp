@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "nerf/inspect/angle_residuals.h"
+
 namespace nerf {
 namespace {
 
@@ -17,8 +19,7 @@ constexpr double kDeviation = 1.48;
 // From which on a scene calls for an effect.
 constexpr double kExposureStops = 0.1;   // standard deviation over the photographs
 constexpr double kViewDependent = 0.12;  // share of points
-constexpr double kFlat = 0.05;     // log light, by which places without any texture may change
-constexpr double kPassing = 0.02;  // share of sightings that show something else
+constexpr double kPassing = 0.02;        // share of sightings that show something else
 constexpr double kSomethingElse = 0.35;  // log light, and four times what is usual
 
 double Luminance(const Eigen::Vector3f& log_light) { return static_cast<double>(log_light.mean()); }
@@ -40,7 +41,7 @@ Verdict JudgeView(const TrackColors& colors, const PhotographFit& fit) {
     if (spread.left_over.size() < kFewestViews) continue;
     ++judged;
     const double change = kDeviation * Quantile(spread.left_over, 0.5);
-    if (change > kFlat + Quantile(spread.contrast, 0.5)) ++changing;
+    if (change > kFlatChange + Quantile(spread.contrast, 0.5)) ++changing;
   }
   if (judged < kFewestPoints) {
     return Undecided(

@@ -71,6 +71,7 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   for (const auto& part : fit.of_photograph) {
     inspection.stops.push_back(static_cast<double>(part.mean()) / std::numbers::ln2);
   }
+  inspection.residuals = ResidualsByAngle(posed, colors, fit);
   inspection.verdicts.push_back(JudgeView(colors, fit));
   inspection.verdicts.push_back(facts.transparent > 0 ? NoBackground() : JudgeBackground(posed));
   inspection.verdicts.push_back(JudgeExposure(inspection.stops, "in the same points"));
