@@ -79,7 +79,7 @@ double Coverage(const Scene& scene, const sfm::Camera& camera,
 }
 
 // Whether somebody is to be seen in a pixel or in one beside it.
-bool Passes(const std::vector<Object>& passers_by, const sfm::Camera& camera,
+bool Passes(const std::vector<Object>& passers_by, const Scene& scene, const sfm::Camera& camera,
             const Eigen::Isometry3d& world_from_camera, int x, int y) {
   for (const double dy : {-0.5, 0.5, 1.5}) {
     for (const double dx : {-0.5, 0.5, 1.5}) {
@@ -87,7 +87,10 @@ bool Passes(const std::vector<Object>& passers_by, const sfm::Camera& camera,
                            std::clamp(y + dy, 0.0, static_cast<double>(camera.height)));
       const Ray ray = RayThrough(camera, world_from_camera, pixel);
       for (const Object& passer_by : passers_by) {
-        if (Intersect(passer_by.shape, ray)) return true;
+        const auto crossing = Intersect(passer_by.shape, ray);
+        if (!crossing) continue;
+        const auto hit = Trace(scene, ray);
+        if (!hit || crossing->distance < hit->distance) return true;
       }
     }
   }
@@ -122,7 +125,7 @@ View RenderView(const Scene& scene, const sfm::Camera& camera,
       }
       StorePhoto(light, photography, view.photo.At(x, y));
       if (view.mask) {
-        const bool passes = Passes(photography.passers_by, camera, world_from_camera, x, y);
+        const bool passes = Passes(photography.passers_by, scene, camera, world_from_camera, x, y);
         *view.mask->At(x, y) = passes ? 0.0f : 1.0f;
       }
       const Vector2d center(x + 0.5, y + 0.5);

@@ -23,10 +23,11 @@ const std::vector<std::pair<std::string, Occasion>> kNames = {
 
 constexpr double kStops = 1.0;            // by which exposures differ from their mean, at most
 constexpr double kWhiteBalance = 0.15;    // and channels, a part of their light
-constexpr double kPassingDistance = 1.3;  // before the camera, scene units, where it sees
-constexpr double kHalfWidth = 0.5;        // this far to both sides, a little rounded down
-constexpr double kAside = 0.1;            // by which who passes by is not in the middle of his part
-constexpr double kPassersRadius = 0.195;  // of a ball as large as all that pass by together
+constexpr double kPassingDistance = 2.0;  // before the camera, scene units, where it sees
+constexpr double kHalfWidth = 0.77;       // this far to both sides, a little rounded down
+constexpr double kAside = 0.154;          // by which who passes by is not in the middle of his part
+constexpr double kUpDown = 0.385;         // of the middle of the photograph, at most
+constexpr double kPassersRadius = 0.268;  // of a ball as large as all that pass by together
 constexpr int kEveryToJudgeBy = 8;
 const Color kGloss = Color::Constant(0.8);
 constexpr double kGlossExponent = 6;  // half as bright 27 degrees off
@@ -38,18 +39,22 @@ double Signed(int i, int view, unsigned seed) {
   return 2 * UnitFromHash(Hash(view, i, 7, seed)) - 1;
 }
 
-// Two or three balls, each of one colour, beside each other on less than half of the way to what
-// the camera looks at. Together they hide a tenth of the photograph.
+// Clothes are of colours that nothing else there has.
+double DarkOrBright(double random) { return random < 0 ? 0.03 : 0.9; }
+
+// Two or three balls, each of one colour, beside each other on two thirds of the way to what the
+// camera looks at, where other cameras look, too. Together they hide a twelfth of the photograph.
 std::vector<Object> PassersBy(int view, unsigned seed, const Eigen::Isometry3d& world_from_camera) {
   const int count = 2 + static_cast<int>(Hash(view, 8, 7, seed) % 2);
   std::vector<Object> balls(count);
   for (int k = 0; k < count; ++k) {
     const auto random = [&](int i) { return Signed(16 * (k + 1) + i, view, seed); };
     const double left_to_right = (2 * k + 1.0) / count - 1;  // the middle of its part
-    const Vector3d in_camera(kHalfWidth * left_to_right + kAside * random(0), 0.25 * random(1),
+    const Vector3d in_camera(kHalfWidth * left_to_right + kAside * random(0), kUpDown * random(1),
                              kPassingDistance);
     balls[k].shape = Sphere{world_from_camera * in_camera, kPassersRadius / std::sqrt(count)};
-    balls[k].material.albedo = Plain{Color(0.8, 0.45 + 0.4 * random(2), 0.45 + 0.4 * random(3))};
+    balls[k].material.albedo =
+        Plain{Color(random(2), random(3), random(4)).unaryExpr(&DarkOrBright)};
   }
   return balls;
 }

@@ -34,7 +34,8 @@ std::optional<Vector2d> PixelThatSees(const Scene& scene, const std::vector<Obje
   const auto hit = Trace(scene, ray);
   if (!hit || std::fabs(hit->distance - distance) > kSamePlace * distance) return std::nullopt;
   for (const Object& passer_by : passers_by) {
-    if (Intersect(passer_by.shape, ray)) return std::nullopt;
+    const auto crossing = Intersect(passer_by.shape, ray);
+    if (crossing && crossing->distance < distance) return std::nullopt;
   }
   return pixel;
 }
