@@ -10,6 +10,8 @@
 
 #include "nerf/commands/commands.h"
 #include "nerf/commands/threads.h"
+#include "nerf/data/image_io.h"
+#include "nerf/inspect/picture.h"
 #include "sfm/input_error.h"
 #include "sfm/masks.h"
 #include "sfm/pose_input.h"
@@ -22,6 +24,7 @@ struct InspectArguments {
   std::string input;
   int threads = 0;
   bool json = false;
+  std::string picture;
 };
 
 nlohmann::json JsonFrom(const sfm::PosedImages& posed, const Inspection& inspection) {
@@ -53,6 +56,7 @@ void RunInspect(const InspectArguments& arguments) {
   const Inspection inspection = Inspect(posed, [&](int read) { progress.Update(read); });
   progress.Finish();
   if (!inspection.warning.empty()) spdlog::warn("{}", inspection.warning);
+  if (!arguments.picture.empty()) WriteImage(arguments.picture, PictureOf(inspection));
   if (arguments.json) {
     fmt::print(
         "{}\n",
@@ -73,8 +77,13 @@ void AddInspectCommand(CLI::App& app) {
       ->required();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");
+  command->add_option(
+      "--picture", arguments->picture,
+      "FILE.png to draw: exposure of each photograph, and how much "
+      "points change with the angle of the view, which rises where things are glossy");
   command->footer(
       "Examples:\n"
+      "  nerf inspect photos/fox/colmap --picture fox.png\n"
       "  nerf inspect photos/fox/colmap\n"
       "  nerf sample drift --calls-for exposure && nerf inspect drift/truth/sparse");
   command->callback([arguments] { RunInspect(*arguments); });

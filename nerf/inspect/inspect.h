@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "nerf/inspect/angle_residuals.h"
 #include "nerf/inspect/verdict.h"
 #include "sfm/posed_images.h"
 
@@ -15,7 +16,8 @@ struct Inspection {
   // Exposure of each photograph against the mean: as the sparse points show it, else as EXIF tells
   // of it; empty: unknown.
   std::vector<double> stops;
-  std::string warning;  // about the input, one line; or empty
+  std::vector<AngleResiduals> residuals;  // empty: no sparse points
+  std::string warning;                    // about the input, one line; or empty
 };
 
 // Looks at the photographs, and at the sparse points where structure from motion has left some:

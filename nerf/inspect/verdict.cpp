@@ -5,12 +5,40 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nerf/config.h"
+
 namespace nerf {
 
 double Verdict::Sure() const {
   if (!decided) return 0;
   if (threshold == 0 || figure <= 0) return 1;
   return std::min(1.0, std::fabs(std::log2(figure / threshold)));
+}
+
+Verdict Fact(const std::string& effect, bool on, double figure, const std::string& evidence,
+             const std::string& setting) {
+  Verdict verdict;
+  verdict.effect = effect;
+  verdict.evidence = evidence;
+  verdict.figure = figure;
+  verdict.decided = true;
+  verdict.on = on;
+  verdict.assignment = EffectAssignment(effect, on ? setting : "null");
+  return verdict;
+}
+
+Verdict Measured(const std::string& effect, double figure, double threshold,
+                 const std::string& evidence) {
+  Verdict verdict = Fact(effect, figure >= threshold, figure, evidence);
+  verdict.threshold = threshold;
+  return verdict;
+}
+
+Verdict Undecided(const std::string& effect, const std::string& evidence) {
+  Verdict verdict;
+  verdict.effect = effect;
+  verdict.evidence = evidence;
+  return verdict;
 }
 
 std::string TableOf(const std::vector<Verdict>& verdicts) {

@@ -23,6 +23,19 @@ struct Verdict {
   std::string assignment = {};
 };
 
+// What needs no threshold.
+//   setting  JSON of the effect's block where it is on
+Verdict Fact(const std::string& effect, bool on, double figure, const std::string& evidence,
+             const std::string& setting = "{}");
+
+// On from the threshold on.
+Verdict Measured(const std::string& effect, double figure, double threshold,
+                 const std::string& evidence);
+
+// Nothing tells.
+Verdict Undecided(const std::string& effect,
+                  const std::string& evidence = "no sparse points to tell from");
+
 // A table of verdicts, a line each.
 std::string TableOf(const std::vector<Verdict>& verdicts);
 

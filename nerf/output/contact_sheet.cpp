@@ -1,15 +1,12 @@
 #include "nerf/output/contact_sheet.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "nerf/data/image_convert.h"
 #include "nerf/output/color_map.h"
+#include "nerf/output/lettering.h"
 
 namespace nerf {
 namespace {
@@ -35,29 +32,12 @@ void Paste(const Image& tile, int left, int top, Image& sheet) {
   }
 }
 
-// The first font that OpenImageIO can load here.
-std::optional<std::string> FindFont() {
-  for (const char* name : {"DejaVuSans", "LiberationSans-Regular", "Arial"}) {
-    OIIO::ImageBuf trial(OIIO::ImageSpec(8, 8, 3, OIIO::TypeFloat));
-    if (OIIO::ImageBufAlgo::render_text(trial, 0, 4, "a", kFontSize, name)) return name;
-  }
-  return std::nullopt;
-}
-
-void WriteCaption(const std::string& text, const std::string& font, int top, Image& sheet) {
-  OIIO::ImageBuf canvas(OIIO::ImageSpec(sheet.width, sheet.height, sheet.channels, OIIO::TypeFloat),
-                        sheet.pixels.data());
-  const std::array<float, 3> black = {0, 0, 0};
-  OIIO::ImageBufAlgo::render_text(canvas, kGap, top + kFontSize, text, kFontSize, font, black);
-}
-
 }  // namespace
 
 Image ContactSheet(std::span<const ContactSheetRow> rows) {
   std::vector<Tiles> tiles;
   int tile_width = 0;
-  const std::optional<std::string> font = FindFont();
-  const int caption_height = font ? kCaptionHeight : 0;
+  const int caption_height = CanLetter() ? kCaptionHeight : 0;
   int height = kGap;
   for (const ContactSheetRow& row : rows) {
     tiles.push_back({Fitted(OnWhite(row.truth)), Fitted(OnWhite(row.rendering)),
@@ -71,7 +51,7 @@ Image ContactSheet(std::span<const ContactSheetRow> rows) {
   std::ranges::fill(sheet.pixels, 1.0f);
   int top = kGap;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    if (font) WriteCaption(rows[i].caption, *font, top, sheet);
+    WriteText(rows[i].caption, kGap, top + kFontSize, kFontSize, sheet);
     top += caption_height;
     for (int k = 0; k < kTiles; ++k) {
       Paste(tiles[i][k], kGap + k * (tile_width + kGap), top, sheet);

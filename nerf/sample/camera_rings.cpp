@@ -86,14 +86,16 @@ sfm::PosedImages CameraRings(const SampleOptions& options) {
     for (int i = 0; i < counts[ring]; ++i) {
       const double azimuth = (start + 360.0 * i / counts[ring] + 2 * irregular.Next()) * kDegree;
       const double elevation = (elevations[ring] + 2 * irregular.Next()) * kDegree;
-      const double distance = kDistance * (1 + 0.05 * irregular.Next());
+      const auto view = static_cast<int>(posed.images.size());
+      const double distance =
+          kDistance * DistanceFactor(options.occasion, view) * (1 + 0.05 * irregular.Next());
       const Vector3d position =
           distance * Vector3d(std::cos(azimuth) * std::cos(elevation),
                               std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
       const Vector3d target = kSubject + 0.08 * irregular.NextPoint();
       sfm::PosedImage image;
-      image.name = fmt::format("view_{:03}.{}", posed.images.size(),
-                               options.occasion == Occasion::kHdr ? "exr" : "png");
+      image.name =
+          fmt::format("view_{:03}.{}", view, options.occasion == Occasion::kHdr ? "exr" : "png");
       image.world_from_camera = LookAt(position, target, 3 * kDegree * irregular.Next());
       posed.images.push_back(image);
     }

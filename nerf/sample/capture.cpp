@@ -79,13 +79,19 @@ double Coverage(const Scene& scene, const sfm::Camera& camera,
 }
 
 // Whether somebody is to be seen in a pixel or in one beside it.
-bool Passes(const Object& passer_by, const sfm::Camera& camera,
+bool Passes(const std::vector<Object>& passers_by, const Scene& scene, const sfm::Camera& camera,
             const Eigen::Isometry3d& world_from_camera, int x, int y) {
   for (const double dy : {-0.5, 0.5, 1.5}) {
     for (const double dx : {-0.5, 0.5, 1.5}) {
       const Vector2d pixel(std::clamp(x + dx, 0.0, static_cast<double>(camera.width)),
                            std::clamp(y + dy, 0.0, static_cast<double>(camera.height)));
-      if (Intersect(passer_by.shape, RayThrough(camera, world_from_camera, pixel))) return true;
+      const Ray ray = RayThrough(camera, world_from_camera, pixel);
+      for (const Object& passer_by : passers_by) {
+        const auto crossing = Intersect(passer_by.shape, ray);
+        if (!crossing) continue;
+        const auto hit = Trace(scene, ray);
+        if (!hit || crossing->distance < hit->distance) return true;
+      }
     }
   }
   return false;
@@ -105,7 +111,8 @@ View RenderView(const Scene& scene, const sfm::Camera& camera,
             Image(width, height, 3, ColorEncoding::kLinear)};
   if (photography.mask) view.mask = Image(width, height, 1);
   Scene photographed = scene;
-  if (photography.passer_by) photographed.objects.push_back(*photography.passer_by);
+  photographed.objects.insert(photographed.objects.end(), photography.passers_by.begin(),
+                              photography.passers_by.end());
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       Color light =
@@ -118,8 +125,7 @@ View RenderView(const Scene& scene, const sfm::Camera& camera,
       }
       StorePhoto(light, photography, view.photo.At(x, y));
       if (view.mask) {
-        const bool passes = photography.passer_by &&
-                            Passes(*photography.passer_by, camera, world_from_camera, x, y);
+        const bool passes = Passes(photography.passers_by, scene, camera, world_from_camera, x, y);
         *view.mask->At(x, y) = passes ? 0.0f : 1.0f;
       }
       const Vector2d center(x + 0.5, y + 0.5);

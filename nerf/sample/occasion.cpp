@@ -18,25 +18,52 @@ const std::vector<std::pair<std::string, Occasion>> kNames = {
     {"exposure", Occasion::kExposure}, {"masks", Occasion::kMasks},
     {"alpha", Occasion::kAlpha},       {"robust", Occasion::kRobust},
     {"depth", Occasion::kDepth},       {"hdr", Occasion::kHdr},
+    {"poses", Occasion::kPoses},       {"footprint", Occasion::kFootprint},
 };
 
-constexpr double kStops = 1.0;          // by which exposures differ from their mean, at most
-constexpr double kWhiteBalance = 0.15;  // and channels, a part of their light
+constexpr double kStops = 1.0;            // by which exposures differ from their mean, at most
+constexpr double kWhiteBalance = 0.15;    // and channels, a part of their light
+constexpr double kPassingDistance = 2.0;  // before the camera, scene units, where it sees
+constexpr double kHalfWidth = 0.77;       // this far to both sides, a little rounded down
+constexpr double kAside = 0.154;          // by which who passes by is not in the middle of his part
+constexpr double kUpDown = 0.385;         // of the middle of the photograph, at most
+constexpr double kPassersRadius = 0.268;  // of a ball as large as all that pass by together
 constexpr int kEveryToJudgeBy = 8;
+const Color kGloss = Color::Constant(0.8);
+constexpr double kGlossExponent = 6;  // half as bright 27 degrees off
+constexpr double kFarFactor = 4;      // of the distance of cameras, and
+constexpr double kWideDome = 20;      // scene units, which holds those that are far
 
 // The i-th random number of a view, in [-1, 1).
 double Signed(int i, int view, unsigned seed) {
   return 2 * UnitFromHash(Hash(view, i, 7, seed)) - 1;
 }
 
-// A ball of one colour, a third of the way to what the camera looks at.
-Object PasserBy(int view, unsigned seed, const Eigen::Isometry3d& world_from_camera) {
-  const Vector3d in_camera(0.35 * Signed(0, view, seed), 0.25 * Signed(1, view, seed), 1.3);
-  Object ball;
-  ball.shape = Sphere{world_from_camera * in_camera, 0.16};
-  ball.material.albedo =
-      Plain{Color(0.8, 0.45 + 0.4 * Signed(2, view, seed), 0.45 + 0.4 * Signed(3, view, seed))};
-  return ball;
+// Clothes are of colours that nothing else there has.
+double DarkOrBright(double random) { return random < 0 ? 0.03 : 0.9; }
+
+// Two or three balls, each of one colour, beside each other on two thirds of the way to what the
+// camera looks at, where other cameras look, too. Together they hide a twelfth of the photograph.
+std::vector<Object> PassersBy(int view, unsigned seed, const Eigen::Isometry3d& world_from_camera) {
+  const int count = 2 + static_cast<int>(Hash(view, 8, 7, seed) % 2);
+  std::vector<Object> balls(count);
+  for (int k = 0; k < count; ++k) {
+    const auto random = [&](int i) { return Signed(16 * (k + 1) + i, view, seed); };
+    const double left_to_right = (2 * k + 1.0) / count - 1;  // the middle of its part
+    const Vector3d in_camera(kHalfWidth * left_to_right + kAside * random(0), kUpDown * random(1),
+                             kPassingDistance);
+    balls[k].shape = Sphere{world_from_camera * in_camera, kPassersRadius / std::sqrt(count)};
+    balls[k].material.albedo =
+        Plain{Color(random(2), random(3), random(4)).unaryExpr(&DarkOrBright)};
+  }
+  return balls;
+}
+
+void Widen(Scene& scene, double dome, double sand) {
+  scene.dome->radius = dome;
+  for (Object& object : scene.objects) {
+    if (Disc* const disc = std::get_if<Disc>(&object.shape)) disc->radius = sand;
+  }
 }
 
 }  // namespace
@@ -62,25 +89,30 @@ Scene SceneOf(Occasion occasion) {
                   [](const Object& object) { return std::holds_alternative<Disc>(object.shape); });
     scene.dome.reset();
   }
-  if (occasion == Occasion::kBackground) {
-    // As far as the eye can tell, without end.
-    scene.dome->radius = 1000;
-    for (Object& object : scene.objects) {
-      if (Disc* const ground = std::get_if<Disc>(&object.shape)) ground->radius = 300;
-    }
-  }
+  // As far as the eye can tell, without end.
+  if (occasion == Occasion::kBackground) Widen(scene, 1000, 300);
+  if (occasion == Occasion::kFootprint) Widen(scene, kWideDome, kWideDome);
   for (Object& object : scene.objects) {
     if (occasion == Occasion::kBuiltIn) break;
     object.material.mirror = Color::Zero();
-    // A coat on everything but the slab.
+    // On what stands there. The slab is in every photograph and all of it faces the same way, so
+    // that its gloss would look like a change of exposure.
     const bool slab = &object == &scene.objects.front();
-    if (occasion == Occasion::kView && !slab) {
-      object.material.mirror = Color(0.25, 0.25, 0.25);
-      object.material.highlight_exponent = 60;
+    if (occasion == Occasion::kView && !slab && !std::holds_alternative<Disc>(object.shape)) {
+      object.material.gloss = kGloss;
+      object.material.highlight_exponent = kGlossExponent;
     }
   }
   if (occasion == Occasion::kHdr) scene.sun.irradiance *= 8;
   return scene;
+}
+
+bool IsToJudgeBy(int view) { return view % kEveryToJudgeBy == 0; }
+
+double DistanceFactor(Occasion occasion, int view) {
+  if (occasion != Occasion::kFootprint) return 1;
+  // In turn, and so that those to judge by are in turn, too.
+  return (view + view / kEveryToJudgeBy) % 2 == 0 ? 1 : kFarFactor;
 }
 
 Photography PhotographyOf(Occasion occasion, int view, unsigned seed,
@@ -96,8 +128,8 @@ Photography PhotographyOf(Occasion occasion, int view, unsigned seed,
     }
   }
   const bool passes = occasion == Occasion::kMasks || occasion == Occasion::kRobust;
-  if (passes && view % kEveryToJudgeBy != 0) {
-    photography.passer_by = PasserBy(view, seed, world_from_camera);
+  if (passes && !IsToJudgeBy(view)) {
+    photography.passers_by = PassersBy(view, seed, world_from_camera);
   }
   return photography;
 }

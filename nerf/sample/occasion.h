@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,7 @@ namespace nerf::sample {
 enum class Occasion {
   kBuiltIn,     // the built-in scene: mirrors, a sky, a ground to the horizon
   kNothing,     // matt things on sand, under a painted tent: the simplest field is enough
-  kView,        // the same with coats that mirror
+  kView,        // the same with gloss, in which the sun shows broadly
   kBackground,  // a sky, and ground to the horizon
   kExposure,    // exposure and white balance change from photograph to photograph
   kMasks,       // people pass by, and masks say where
@@ -22,6 +21,8 @@ enum class Occasion {
   kRobust,      // people pass by
   kDepth,       // few photographs: what alone they leave open, sparse points say
   kHdr,         // radiance in EXR files, with much more light than white
+  kPoses,       // the poses that come with the photographs are a little wrong
+  kFootprint,   // half of the photographs are taken from four times as far
 };
 
 // By the names that a person uses: "built-in", "nothing", "view", ...
@@ -34,16 +35,22 @@ Scene SceneOf(Occasion occasion);
 // How many photographs are taken, unless somebody says otherwise.
 int UsualViews(Occasion occasion);
 
+// Every eighth photograph, from the first on, is one to judge by: nobody passes by there, and its
+// pose is right.
+bool IsToJudgeBy(int view);
+
+// How many times the usual distance from the subject a photograph is taken from.
+double DistanceFactor(Occasion occasion, int view);
+
 // How one photograph of a sample is taken.
 struct Photography {
-  Color gain = Color::Ones();       // of light, by exposure and white balance
-  bool linear = false;              // radiance as it is, else sRGB in [0,1]
-  bool alpha = false;               // 0 where a ray meets nothing
-  bool mask = false;                // black where somebody passes by
-  std::optional<Object> passer_by;  // who stands before the camera, and in no other photograph
+  Color gain = Color::Ones();      // of light, by exposure and white balance
+  bool linear = false;             // radiance as it is, else sRGB in [0,1]
+  bool alpha = false;              // 0 where a ray meets nothing
+  bool mask = false;               // black where somebody passes by
+  std::vector<Object> passers_by;  // who stands before the camera, and in no other photograph
 };
 
-// Every eighth photograph, from the first on, is one to judge by: nobody passes by there.
 //   view  index of the photograph; seed  of the sample
 Photography PhotographyOf(Occasion occasion, int view, unsigned seed,
                           const Eigen::Isometry3d& world_from_camera);

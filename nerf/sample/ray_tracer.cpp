@@ -35,17 +35,21 @@ std::optional<Hit> TraceDome(const Dome& dome, const Ray& ray) {
   return hit;
 }
 
-// The light of the coat: what it mirrors, and the sun as a highlight.
+// The sun as a highlight of a perfect reflector; 0 in shadow.
+Color Highlight(const Scene& scene, const Ray& ray, const Hit& hit, bool in_sun) {
+  if (!in_sun) return Color::Zero();
+  const Vector3d mirrored = Mirrored(ray.direction_in_world, hit.normal_in_world);
+  const double n = hit.material->highlight_exponent;
+  const double cosine = std::max(0.0, mirrored.dot(scene.sun.direction_to_sun));
+  const double lobe = std::pow(cosine, n) * (n + 2) / (2 * std::numbers::pi);
+  return scene.sun.irradiance * lobe * hit.normal_in_world.dot(scene.sun.direction_to_sun);
+}
+
+// The light of the coat: what it mirrors, and the sun.
 Color CoatRadiance(const Scene& scene, const Ray& ray, const Hit& hit, bool in_sun, int bounces) {
   const Ray mirrored{hit.x_in_world, Mirrored(ray.direction_in_world, hit.normal_in_world)};
-  Color radiance = Color::Zero();
+  Color radiance = Highlight(scene, ray, hit, in_sun);
   if (bounces > 0) radiance += Radiance(scene, mirrored, bounces - 1);
-  if (in_sun) {
-    const double n = hit.material->highlight_exponent;
-    const double cosine = mirrored.direction_in_world.dot(scene.sun.direction_to_sun);
-    const double lobe = std::pow(std::max(0.0, cosine), n) * (n + 2) / (2 * std::numbers::pi);
-    radiance += scene.sun.irradiance * lobe * hit.normal_in_world.dot(scene.sun.direction_to_sun);
-  }
   return radiance;
 }
 
@@ -95,7 +99,12 @@ Color Radiance(const Scene& scene, const Ray& ray, int bounces) {
   if (in_sun) {
     light += scene.sun.irradiance * normal.dot(scene.sun.direction_to_sun) / std::numbers::pi;
   }
-  const Color base = hit->albedo.cwiseProduct(light);
+  const Color& gloss = hit->material->gloss;
+  Color base = hit->albedo.cwiseProduct(light);
+  if (!gloss.isZero(0)) {
+    base = (Color::Ones() - gloss).cwiseProduct(base) +
+           gloss.cwiseProduct(Highlight(scene, ray, *hit, in_sun));
+  }
   if (hit->material->mirror.isZero(0)) return base;
 
   const Color F = SchlickFresnel(hit->material->mirror, -normal.dot(ray.direction_in_world));

@@ -26,7 +26,8 @@ bool SunReaches(const Scene& scene, const Eigen::Vector3d& x_in_world,
 
 // Radiance that arrives at the origin of a ray, linear RGB, in units where an ambient radiance of 1
 // makes a white surface 1.
-//   surface  L = (1 - F) albedo (ambient + E cos / pi) + F L(mirrored ray) + F E lobe
+//   surface  L = (1 - F) base + F L(mirrored ray) + F E cos lobe
+//   base     (1 - gloss) albedo (ambient + E cos / pi) + gloss E cos lobe
 //   F        Schlick 1994; lobe: Phong, normalised (Lafortune and Willems 1994)
 //   bounces  how many mirrors a path may meet; beyond them a coat reflects nothing
 Color Radiance(const Scene& scene, const Ray& ray, int bounces);

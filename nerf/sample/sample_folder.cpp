@@ -10,6 +10,7 @@
 #include "nerf/sample/camera_rings.h"
 #include "nerf/sample/capture.h"
 #include "nerf/sample/sparse_points.h"
+#include "nerf/sample/wrong_poses.h"
 #include "sfm/colmap_text_writer.h"
 #include "sfm/input_error.h"
 #include "sfm/progress.h"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMap[] = {"depth", "normal", "albedo"};
 constexpr const char* kParts[] = {"images", "masks", "truth", "truth/sparse"};
+constexpr const char* kTruePoses = "poses.json";
 constexpr const char* kSparse = "sparse";  // folder of a COLMAP model, in truth
 
 std::string MapName(const std::string& photo, const std::string& map) {
@@ -31,9 +33,10 @@ std::string MapName(const std::string& photo, const std::string& map) {
 // Whether a file carries a name that WriteSample gives, or that a writer of ours gives to a file it
 // has not finished: what an interrupted run leaves behind must not stand in the way of the next.
 bool IsOurs(const std::string& name) {
-  static const std::regex ours(R"(view_\d{3}\.(png|exr|depth\.exr|normal\.exr|albedo\.exr))"
-                               R"(|(transforms\.json|(cameras|images|points3D)\.txt)(\.tmp\d+)?)"
-                               R"(|\.view_\d{3}\..*)");
+  static const std::regex ours(
+      R"(view_\d{3}\.(png|exr|depth\.exr|normal\.exr|albedo\.exr))"
+      R"(|((transforms|poses)\.json|(cameras|images|points3D)\.txt)(\.tmp\d+)?)"
+      R"(|\.view_\d{3}\..*)");
   return std::regex_match(name, ours);
 }
 
@@ -70,6 +73,7 @@ void RemoveWhatIsLeftOver(const fs::path& folder, const sfm::PosedImages& posed,
   if (occasion != Occasion::kMasks) fs::remove_all(folder / "masks");
   std::set<std::string> wanted = {"transforms.json", kSparse, "cameras.txt", "images.txt",
                                   "points3D.txt"};
+  if (occasion == Occasion::kPoses) wanted.insert(kTruePoses);
   for (const auto& image : posed.images) {
     wanted.insert(image.name);
     for (const char* map : kMap) wanted.insert(MapName(image.name, map));
@@ -107,10 +111,15 @@ void WriteSample(const fs::path& folder, const SampleOptions& options) {
     throw sfm::InputError("{} cannot be written ({}): choose a folder that is yours",
                           folder.string(), e.code().message());
   }
-  sfm::WriteTransformsJson(posed, folder / "truth" / "transforms.json");
   const Scene scene = SceneOf(options.occasion);
   posed.points = SparsePoints(scene, posed, options);
-  sfm::WriteColmapText(posed, folder / "truth" / "sparse");
+  sfm::PosedImages handed_over = posed;
+  if (options.occasion == Occasion::kPoses) {
+    sfm::WriteTransformsJson(posed, folder / "truth" / kTruePoses);
+    handed_over = WithWrongPoses(posed, options.seed);
+  }
+  sfm::WriteTransformsJson(handed_over, folder / "truth" / "transforms.json");
+  sfm::WriteColmapText(handed_over, folder / "truth" / "sparse");
   sfm::ProgressLine progress("rendering", options.views);
   progress.Update(0);
   int done = 0;

@@ -10,8 +10,10 @@ namespace nerf::sample {
 //   images/view_000.png, ...        photographs, 8-bit sRGB (or .exr, radiance), all that structure
 //                                   from motion and training may see
 //   masks/view_000.png              where the occasion is masks
-//   truth/transforms.json           true poses, pointing at ../images
+//   truth/transforms.json           poses, pointing at ../images: true ones, but where the occasion
+//                                   is poses
 //   truth/sparse/                   the same as a COLMAP model, with points and who sees them
+//   truth/poses.json                true poses, where those of transforms.json are not
 //   truth/view_000.depth.exr        distance along the ray, scene units
 //   truth/view_000.normal.exr       unit normals, world axes
 //   truth/view_000.albedo.exr       linear

@@ -13,7 +13,9 @@ namespace nerf::sample {
 struct Material {
   Texture albedo;                   // of the base
   Color mirror = Color::Zero();     // reflectance of the coat at normal incidence; 0: no coat
-  double highlight_exponent = 400;  // of the Phong lobe in which the coat shows the sun
+  double highlight_exponent = 400;  // of the Phong lobe in which coat and gloss show the sun
+  Color gloss = Color::Zero();      // part of the light that the base reflects not evenly but in
+                                    // that lobe: rough, so that it shows the sun and nothing else
 };
 
 struct Object {

@@ -20,7 +20,7 @@ constexpr std::size_t kFewestViews = 3;  // as COLMAP keeps
 Ray RayTo(const Vector3d& from, const Vector3d& to) { return {from, (to - from).normalized()}; }
 
 // Where a camera sees a point, or nullopt where something stands before it or it looks elsewhere.
-std::optional<Vector2d> PixelThatSees(const Scene& scene, const std::optional<Object>& passer_by,
+std::optional<Vector2d> PixelThatSees(const Scene& scene, const std::vector<Object>& passers_by,
                                       const sfm::Camera& camera,
                                       const Eigen::Isometry3d& world_from_camera,
                                       const Vector3d& x_in_world) {
@@ -33,7 +33,10 @@ std::optional<Vector2d> PixelThatSees(const Scene& scene, const std::optional<Ob
   const double distance = (x_in_world - ray.origin_in_world).norm();
   const auto hit = Trace(scene, ray);
   if (!hit || std::fabs(hit->distance - distance) > kSamePlace * distance) return std::nullopt;
-  if (passer_by && Intersect(passer_by->shape, ray)) return std::nullopt;
+  for (const Object& passer_by : passers_by) {
+    const auto crossing = Intersect(passer_by.shape, ray);
+    if (crossing && crossing->distance < distance) return std::nullopt;
+  }
   return pixel;
 }
 
@@ -45,11 +48,11 @@ std::vector<sfm::SparsePoint> SparsePoints(const Scene& scene, const sfm::PosedI
   std::uniform_int_distribution<std::size_t> any_image(0, posed.images.size() - 1);
   std::uniform_real_distribution<double> uniform(0, 1);
   std::normal_distribution<double> error(0, kPixelError);
-  std::vector<std::optional<Object>> passers;
+  std::vector<std::vector<Object>> passers;
   for (std::size_t i = 0; i < posed.images.size(); ++i) {
     passers.push_back(PhotographyOf(options.occasion, static_cast<int>(i), options.seed,
                                     posed.images[i].world_from_camera)
-                          .passer_by);
+                          .passers_by);
   }
   std::vector<sfm::SparsePoint> points;
   for (int i = 0; i < kPoints; ++i) {

@@ -66,15 +66,27 @@ test::ScratchFolder* EffectsCommands::folder_ = nullptr;
 TEST_F(EffectsCommands, InspectPrintsAVerdictForEachEffectWithItsEvidence) {
   const auto table = RunNerf("inspect " + Path("exposure/truth/sparse"));
   EXPECT_EQ(table.exit_status, 0);
-  for (const char* effect :
-       {"alpha", "hdr", "masks", "view", "background", "exposure", "robust", "depth"}) {
+  for (const char* effect : {"alpha", "hdr", "masks", "view", "background", "exposure", "robust",
+                             "depth", "poses", "footprint"}) {
     EXPECT_THAT(table.output, HasSubstr(effect));
   }
   EXPECT_THAT(table.output, HasSubstr("stops"));
   const auto json = RunNerf("inspect --json " + Path("exposure/truth/sparse"));
   const auto root = nlohmann::json::parse(json.output);
-  EXPECT_EQ(root.at("verdicts").size(), 9u);
+  EXPECT_EQ(root.at("verdicts").size(), 11u);
   EXPECT_EQ(root.at("exposure_stops").size(), 17u);
+}
+
+TEST_F(EffectsCommands, InspectDrawsAPictureWhereItIsToldTo) {
+  const std::string inspect = "inspect " + Path("exposure/truth/sparse") + " --picture ";
+  const auto drawn = RunNerf(inspect + Path("seen.png"));
+  ASSERT_EQ(drawn.exit_status, 0) << drawn.output;
+  EXPECT_THAT(drawn.output, HasSubstr("exposure"));
+  EXPECT_EQ(ReadImage(Path("seen.png"), false).channels, 3);
+
+  ExpectRefused(inspect + Path("no-such-folder/seen.png"), HasSubstr("no-such-folder/seen.png"));
+  ExpectRefused(inspect + Path("seen.rain"), HasSubstr("seen.rain"));
+  EXPECT_FALSE(fs::exists(Path("no-such-folder")));
 }
 
 TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
@@ -83,7 +95,7 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   EXPECT_THAT(run.output, HasSubstr("what the capture calls for"));
   EXPECT_FALSE(Json("auto/config.json").at("effects").at("exposure").is_null());
   EXPECT_TRUE(Json("auto/config.json").at("effects").at("masks").is_null());
-  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 9u);
+  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 11u);
   EXPECT_GT(Json("auto/config.json").at("march").at("near_distance"), 0.1);
 
   const auto eval = RunNerf("eval " + Path("auto"));

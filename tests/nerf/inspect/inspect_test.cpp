@@ -69,7 +69,9 @@ INSTANTIATE_TEST_SUITE_P(Inspect, EachOccasion,
                                          Case{Occasion::kAlpha, "Alpha", "alpha"},
                                          Case{Occasion::kRobust, "Robust", "robust"},
                                          Case{Occasion::kDepth, "Depth", "depth"},
-                                         Case{Occasion::kHdr, "Hdr", "hdr"}),
+                                         Case{Occasion::kHdr, "Hdr", "hdr"},
+                                         Case{Occasion::kPoses, "Poses", "poses"},
+                                         Case{Occasion::kFootprint, "Footprint", "footprint"}),
                          NameOf);
 
 TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {

@@ -7,10 +7,14 @@
 #include <cmath>
 #include <filesystem>
 
+#include "nerf/data/camera.h"
 #include "nerf/data/image_io.h"
+#include "nerf/sample/camera_rings.h"
 #include "nerf/sample/capture.h"
 #include "nerf/sample/sample_folder.h"
 #include "nerf/sample/sparse_points.h"
+#include "sfm/colmap_model.h"
+#include "sfm/transforms_json.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
@@ -37,6 +41,7 @@ TEST(Occasion, OfNothingShowsMattThingsAndSomethingEverywhere) {
   const Capture capture = MakeCapture(Tiny(Occasion::kNothing));
   for (const Object& object : SceneOf(Occasion::kNothing).objects) {
     EXPECT_TRUE(object.material.mirror.isZero());
+    EXPECT_TRUE(object.material.gloss.isZero());
   }
   for (const View& view : capture.views) {
     for (const float depth : view.depth.pixels) EXPECT_GT(depth, 0);
@@ -80,6 +85,39 @@ TEST(Occasion, OfRobustLeavesEveryEighthPhotographToJudgeBy) {
   EXPECT_GE(changed, 6);
 }
 
+TEST(Occasion, OfMasksHidesATwelfthOfEachPhotographBehindTwoOrThree) {
+  SampleOptions options = Tiny(Occasion::kMasks);
+  options.views = 36;
+  options.width = 160;
+  options.height = 120;
+  options.samples_per_pixel = 1;
+  const Capture capture = MakeCapture(options);
+  double hidden = 0, pixels = 0;
+  for (int i = 0; i < options.views; ++i) {
+    const auto people =
+        PhotographyOf(options.occasion, i, options.seed, capture.posed.images[i].world_from_camera)
+            .passers_by.size();
+    if (IsToJudgeBy(i)) {
+      EXPECT_EQ(people, 0u);
+      continue;
+    }
+    EXPECT_TRUE(people == 2 || people == 3) << people;
+    for (const float shown : capture.views[i].mask->pixels) hidden += shown == 0;
+    pixels += static_cast<double>(capture.views[i].mask->pixels.size());
+  }
+  EXPECT_GT(hidden / pixels, 0.07);
+  EXPECT_LT(hidden / pixels, 0.11);
+}
+
+TEST(Occasion, OfViewIsGlossyAndMirrorsNothing) {
+  int glossy = 0;
+  for (const Object& object : SceneOf(Occasion::kView).objects) {
+    EXPECT_TRUE(object.material.mirror.isZero());
+    glossy += !object.material.gloss.isZero();
+  }
+  EXPECT_GE(glossy, 5);
+}
+
 TEST(Occasion, OfMasksMarksEveryPixelInWhichSomebodyIs) {
   const Capture plain = MakeCapture(Tiny(Occasion::kNothing));
   const Capture masked = MakeCapture(Tiny(Occasion::kMasks));
@@ -99,6 +137,25 @@ TEST(Occasion, OfMasksMarksEveryPixelInWhichSomebodyIs) {
     }
   }
   EXPECT_GT(hidden, 100);
+}
+
+TEST(Occasion, OfFootprintIsNearAndFarInTurnAndWithinWhatIsThere) {
+  SampleOptions options = Tiny(Occasion::kFootprint);
+  options.views = 36;
+  options.samples_per_pixel = 1;
+  const Capture capture = MakeCapture(options);
+  int far = 0, far_to_judge_by = 0, to_judge_by = 0;
+  for (int i = 0; i < options.views; ++i) {
+    const double distance = capture.posed.images[i].world_from_camera.translation().norm();
+    EXPECT_NEAR(distance, distance > 6 ? 12 : 3, 0.06 * distance);
+    far += distance > 6;
+    to_judge_by += IsToJudgeBy(i);
+    far_to_judge_by += IsToJudgeBy(i) && distance > 6;
+    for (const float depth : capture.views[i].depth.pixels) ASSERT_GT(depth, 0);
+  }
+  EXPECT_NEAR(far, options.views / 2, 2);
+  EXPECT_GE(far_to_judge_by, 2);
+  EXPECT_GE(to_judge_by - far_to_judge_by, 2);
 }
 
 TEST(Occasion, OfAlphaIsTransparentWhereNothingIsMet) {
@@ -147,6 +204,36 @@ TEST(SparsePoints, AreSeenWhereTheirTracksSay) {
   }
 }
 
+// Who stands behind a point does not hide it.
+TEST(SparsePoints, AreSeenWhereverTheyAreNotMaskedOut) {
+  SampleOptions options = Tiny(Occasion::kMasks);
+  options.width = 160;
+  options.height = 120;
+  options.samples_per_pixel = 1;
+  const Capture capture = MakeCapture(options);
+  const sfm::PosedImages& posed = capture.posed;
+  const auto points = SparsePoints(SceneOf(options.occasion), posed, options);
+  int seen_unmasked = 0;
+  for (const sfm::SparsePoint& point : points) {
+    for (const sfm::TrackElement& seen : point.track) {
+      const auto pixel =
+          PixelFromPoint(posed.cameras[0],
+                         posed.images[seen.image].world_from_camera.inverse() * point.x_in_world);
+      const auto x = static_cast<int>(pixel->x()), y = static_cast<int>(pixel->y());
+      seen_unmasked += *capture.views[seen.image].mask->At(x, y) == 1;
+    }
+  }
+  std::size_t sightings = 0, unhindered = 0;
+  options.occasion = Occasion::kNothing;
+  for (const auto& point : points) sightings += point.track.size();
+  for (const auto& point : SparsePoints(SceneOf(options.occasion), posed, options)) {
+    unhindered += point.track.size();
+  }
+  // Nearly all are outside of the masks, which reach a pixel further, and few are lost.
+  EXPECT_GT(seen_unmasked, 0.98 * sightings);
+  EXPECT_GT(sightings, 0.85 * unhindered);
+}
+
 TEST(WriteSample, WithMasksWritesThemAndTakesThemAwayAgain) {
   const test::ScratchFolder folder;
   WriteSample(folder.path(), Tiny(Occasion::kMasks));
@@ -155,6 +242,26 @@ TEST(WriteSample, WithMasksWritesThemAndTakesThemAwayAgain) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "masks"));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "images" / "view_001.exr"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "images" / "view_001.png"));
+}
+
+TEST(WriteSample, WithWrongPosesKeepsTheTrueOnesApart) {
+  const test::ScratchFolder folder;
+  const SampleOptions options = Tiny(Occasion::kPoses);
+  WriteSample(folder.path(), options);
+  const sfm::PosedImages truth = CameraRings(options);
+  const auto right = sfm::ReadTransformsJson(folder.path() / "truth" / "poses.json").images;
+  const auto wrong = sfm::ReadTransformsJson(folder.path() / "truth" / "transforms.json").images;
+  const auto sparse =
+      sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images").images;
+  ASSERT_EQ(right.size(), truth.images.size());
+  for (std::size_t i = 0; i < truth.images.size(); ++i) {
+    const Eigen::Isometry3d& pose = truth.images[i].world_from_camera;
+    EXPECT_TRUE(right[i].world_from_camera.isApprox(pose, 1e-12));
+    EXPECT_EQ(wrong[i].world_from_camera.isApprox(pose, 1e-12), IsToJudgeBy(static_cast<int>(i)));
+    EXPECT_TRUE(sparse[i].world_from_camera.isApprox(wrong[i].world_from_camera, 1e-9));
+  }
+  WriteSample(folder.path(), Tiny(Occasion::kNothing));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "truth" / "poses.json"));
 }
 
 }  // namespace

@@ -138,6 +138,34 @@ TEST(Radiance, ShowsTheSunAsAHighlightWhereTheMirrorFacesIt) {
   EXPECT_LT(Radiance(scene, Down(0.5, 0), 0).maxCoeff(), 1e-6);
 }
 
+// The sun in the zenith over a glossy ball, and nothing else that shines.
+Scene GlossInTheSun(double gloss, double exponent) {
+  Scene scene = MirrorUnderDome(Color::Zero());
+  scene.dome = Dome{20, Plain{Color::Constant(100)}};
+  scene.objects.front().material.gloss = Color::Constant(gloss);
+  scene.objects.front().material.highlight_exponent = exponent;
+  scene.sun = {Vector3d::UnitZ(), Color::Ones()};
+  return scene;
+}
+
+TEST(Radiance, OfGlossShowsTheSunBroadlyAndNothingElse) {
+  const Scene scene = GlossInTheSun(0.3, 10);
+  const double at_best = 0.3 * 12 / (2 * kPi);
+  ExpectColor(Radiance(scene, Down(0, 0), 2), Color::Constant(at_best));
+  // At 10 degrees off its normal the ball turns the ray 20 degrees off the sun.
+  const double angle = kPi / 18;
+  ExpectColor(Radiance(scene, Down(std::sin(angle), 0), 2),
+              Color::Constant(at_best * std::pow(std::cos(2 * angle), 10) * std::cos(angle)));
+}
+
+TEST(Radiance, OfGlossTakesFromTheBaseWhatItReflects) {
+  Scene scene = GlossInTheSun(0.3, 10);
+  scene.objects.front().material.albedo = Plain{kAlbedo};
+  scene.sun.irradiance = Color::Zero();
+  scene.ambient = {Color::Ones(), Color::Ones()};
+  ExpectColor(Radiance(scene, Down(0, 0), 2), 0.7 * kAlbedo);
+}
+
 TEST(Trace, TurnsTheNormalTowardsTheRay) {
   const Scene scene = MattSphere();
   const auto outside = Trace(scene, Down(0, 0));
