@@ -21,7 +21,8 @@ namespace {
 // What automatic choices act on so far. The evidence for the others is shown, and they are
 // simulated when asked for: on generated captures they have not been worth a decibel yet (README,
 // "Effects"), and to leave directions away has not been measured on real ones.
-const std::set<std::string> kAutomatic = {"exposure", "masks", "depth", "near"};
+const std::set<std::string> kAutomatic = {"exposure", "masks",     "depth",    "near",
+                                          "poses",    "footprint", "unbounded"};
 
 // Trials tell what shows early; that colour depends on the direction shows late.
 const std::set<std::string> kTried = {"exposure"};
@@ -76,17 +77,8 @@ EffectsChoice ChooseEffects(const sfm::PosedImages& posed, const std::set<std::s
 }
 
 void PrintEffects(const EffectsChoice& choice, const std::set<std::string>& named) {
-  const std::vector<Verdict>& verdicts = choice.inspection.verdicts;
-  if (choice.inspection.stops.empty()) {
-    std::vector<std::string> on;
-    for (const Verdict& v : verdicts) {
-      if (v.on) on.push_back(v.effect);
-    }
-    fmt::print("effects: no sparse points to tell from, so as configured{}{}\n",
-               on.empty() ? "" : "; and ", Join(on));
-  } else {
-    fmt::print("what the capture calls for ({:.1f} s):\n{}", choice.seconds, TableOf(verdicts));
-  }
+  fmt::print("what the capture calls for ({:.1f} s):\n{}", choice.seconds,
+             TableOf(choice.inspection.verdicts));
   if (!named.empty()) {
     fmt::print("as asked for, whatever the capture calls for: {}\n",
                Join({named.begin(), named.end()}));

@@ -187,7 +187,8 @@ void StartRun(const TrainArguments& arguments, const fs::path& run, int threads,
   sfm::MakeOutputFolder(run);
   KeepSparsePoints(found, config, run);
   if (effects.inspect) PrintEffects(choice, named);
-  const sfm::SceneNormalization normalized_from_world = sfm::NormalizeScene(found);
+  const sfm::SceneNormalization normalized_from_world =
+      effects.inspect ? choice.inspection.normalized_from_world : sfm::NormalizeScene(found);
   // First, for it marks the folder as a run's own.
   WriteConfig(config, run);
   sfm::WriteTransformsJson(found, PosesPath(run));

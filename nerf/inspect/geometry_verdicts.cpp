@@ -14,6 +14,7 @@ namespace nerf {
 namespace {
 
 // From which on a scene calls for an effect.
+constexpr double kBall = 1.5;  // radii; of a larger one the middle is finer where space contracts
 constexpr double kFarAway = 0.007;      // share of points beyond kFar
 constexpr double kFar = 8;              // radii of what the cameras look at
 constexpr double kFewPhotographs = 15;  // before which a point stands
@@ -25,11 +26,20 @@ constexpr double kShareOfTheWay = 0.7;  // to them, in which nothing stands
 
 }  // namespace
 
-Verdict JudgeBackground(const sfm::PosedImages& posed) {
-  const sfm::SceneNormalization normalized = sfm::NormalizeScene(posed);
+Verdict JudgeUnbounded(bool alpha, const std::optional<Ball>& hull) {
+  if (!alpha) return Fact("unbounded", true, 0, "photographs without alpha show surroundings");
+  if (!hull) return Fact("unbounded", true, 0, "what alpha leaves may reach beyond 2 radii");
+  return Fact(
+      "unbounded", hull->radius > kBall, hull->radius,
+      fmt::format("what alpha leaves is in a ball of {:.2f} radii; up to {:.1f} need no more",
+                  hull->radius, kBall));
+}
+
+Verdict JudgeBackground(const sfm::PosedImages& posed,
+                        const sfm::SceneNormalization& normalized_from_world) {
   std::size_t far = 0;
   for (const sfm::SparsePoint& point : posed.points) {
-    if (normalized.NormalizedFromWorld(point.x_in_world).norm() > kFar) ++far;
+    if (normalized_from_world.NormalizedFromWorld(point.x_in_world).norm() > kFar) ++far;
   }
   const double share = static_cast<double>(far) / static_cast<double>(posed.points.size());
   return Measured("background", share, kFarAway,
@@ -101,13 +111,13 @@ Verdict JudgeFootprint(const sfm::PosedImages& posed) {
                               median, kScales));
 }
 
-Verdict JudgeNear(const sfm::PosedImages& posed) {
-  const sfm::SceneNormalization normalized = sfm::NormalizeScene(posed);
+Verdict JudgeNear(const sfm::PosedImages& posed,
+                  const sfm::SceneNormalization& normalized_from_world) {
   std::vector<double> distances;
   for (const sfm::SparsePoint& point : posed.points) {
     for (const sfm::TrackElement& seen : point.track) {
       const Eigen::Vector3d camera = posed.images[seen.image].world_from_camera.translation();
-      distances.push_back(normalized.scale * (point.x_in_world - camera).norm());
+      distances.push_back(normalized_from_world.scale * (point.x_in_world - camera).norm());
     }
   }
   const double nearest = Quantile(distances, kNearest);

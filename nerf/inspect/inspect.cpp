@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <numbers>
+#include <optional>
 
 #include "nerf/data/mask.h"
 #include "nerf/inspect/color_verdicts.h"
@@ -11,6 +12,7 @@
 #include "nerf/inspect/photograph_facts.h"
 #include "nerf/inspect/photograph_fit.h"
 #include "nerf/inspect/track_colors.h"
+#include "nerf/inspect/visual_hull.h"
 
 namespace nerf {
 namespace {
@@ -52,12 +54,20 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   Inspection inspection;
   const PhotographFacts facts = LookAtPhotographs(posed);
   AddFacts(facts, inspection.verdicts);
+  const bool alpha = facts.transparent > 0;
+  inspection.normalized_from_world = sfm::NormalizeScene(posed);
+  std::optional<Ball> hull;
+  if (alpha) hull = BallAboutHull(posed, inspection.normalized_from_world, read);
+  inspection.verdicts.push_back(JudgeUnbounded(alpha, hull));
+  if (!inspection.verdicts.back().on) {
+    inspection.normalized_from_world = FittedTo(*hull, inspection.normalized_from_world);
+  }
   if (posed.points.size() < kFewestPoints || posed.images.size() < kFewestPhotographs) {
     const ExifStops exif = ReadExifStops(posed);
     inspection.stops = exif.stops;
     inspection.warning = exif.contradiction;
     inspection.verdicts.push_back(Undecided("view"));
-    inspection.verdicts.push_back(facts.transparent > 0 ? NoBackground() : Undecided("background"));
+    inspection.verdicts.push_back(alpha ? NoBackground() : Undecided("background"));
     inspection.verdicts.push_back(exif.stops.empty() ? Undecided("exposure")
                                                      : JudgeExposure(exif.stops, "by their EXIF"));
     inspection.verdicts.push_back(Undecided("robust"));
@@ -73,13 +83,14 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   }
   inspection.residuals = ResidualsByAngle(posed, colors, fit);
   inspection.verdicts.push_back(JudgeView(colors, fit));
-  inspection.verdicts.push_back(facts.transparent > 0 ? NoBackground() : JudgeBackground(posed));
+  inspection.verdicts.push_back(alpha ? NoBackground()
+                                      : JudgeBackground(posed, inspection.normalized_from_world));
   inspection.verdicts.push_back(JudgeExposure(inspection.stops, "in the same points"));
   inspection.verdicts.push_back(JudgePassers(colors, fit));
   inspection.verdicts.push_back(JudgeDepth(posed));
   inspection.verdicts.push_back(JudgePoses(posed));
   inspection.verdicts.push_back(JudgeFootprint(posed));
-  inspection.verdicts.push_back(JudgeNear(posed));
+  inspection.verdicts.push_back(JudgeNear(posed, inspection.normalized_from_world));
   return inspection;
 }
 

@@ -7,6 +7,7 @@
 #include "nerf/inspect/angle_residuals.h"
 #include "nerf/inspect/verdict.h"
 #include "sfm/posed_images.h"
+#include "sfm/scene_normalization.h"
 
 namespace nerf {
 
@@ -17,7 +18,9 @@ struct Inspection {
   // of it; empty: unknown.
   std::vector<double> stops;
   std::vector<AngleResiduals> residuals;  // empty: no sparse points
-  std::string warning;                    // about the input, one line; or empty
+  // sfm::NormalizeScene; where alpha bounds the scene, so that its ball is the unit ball.
+  sfm::SceneNormalization normalized_from_world;
+  std::string warning;  // about the input, one line; or empty
 };
 
 // Looks at the photographs, and at the sparse points where structure from motion has left some:

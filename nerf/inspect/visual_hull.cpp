@@ -20,7 +20,8 @@ constexpr double kHalf = 2;  // its half width
 constexpr double kCell = 2 * kHalf / kCells;
 // A cell that fewer photographs see, behind what they show, is not known to be empty, and nothing
 // speaks for matter there.
-constexpr int kFewestSights = 2, kShareOfSights = 10;  // the second: one of so many photographs
+constexpr int kFewestSights = 2, kShareOfSights = 4;  // the second: one of so many photographs
+constexpr std::size_t kMostPhotographs = 40;           // more hardly cut off more
 constexpr double kMargin = 1.02;  // of the ball, so that nothing stands on its surface
 
 Vector3d Corner(int x, int y, int z) {
@@ -75,9 +76,10 @@ std::optional<Ball> BallAboutHull(const sfm::PosedImages& posed,
   // How many photographs see each cell, none of which sees it empty; or kEmpty.
   constexpr int kEmpty = -1;
   std::vector<int> seen(kCells * kCells * kCells, 0);
-  int done = 0;
-  for (const sfm::PosedImage& image : posed.images) {
-    if (read) read(++done);
+  const std::size_t looked_at = std::min(kMostPhotographs, posed.images.size());
+  for (std::size_t k = 0; k < looked_at; ++k) {
+    const sfm::PosedImage& image = posed.images[k * posed.images.size() / looked_at];
+    if (read) read(static_cast<int>(k) + 1);
     const sfm::Camera& camera = posed.cameras[image.camera];
     Image photo;
     try {
@@ -103,8 +105,7 @@ std::optional<Ball> BallAboutHull(const sfm::PosedImages& posed,
       }
     });
   }
-  const int fewest =
-      std::max(kFewestSights, static_cast<int>(posed.images.size()) / kShareOfSights);
+  const int fewest = std::max(kFewestSights, static_cast<int>(looked_at) / kShareOfSights);
   Vector3d low = Vector3d::Constant(kHalf), high = -low;
   std::vector<Vector3d> corners;
   for (int z = 0; z < kCells; ++z) {

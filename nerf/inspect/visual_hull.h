@@ -14,7 +14,7 @@ struct Ball {
   double radius = 1;
 };
 
-// The smallest ball about what the alpha of all photographs leaves: the visual hull, in cells of a
+// A small ball about what the alpha of photographs, 40 at most, leaves: the visual hull, in cells of a
 // sixteenth of the normalized unit. A cell is empty where a photograph sees all of it and nothing
 // but transparent pixels there, and where hardly a photograph sees it.
 // Source: Laurentini 1994, "The visual hull concept for silhouette-based image understanding".

@@ -85,6 +85,7 @@ int UsualViews(Occasion occasion) { return occasion == Occasion::kDepth ? 9 : 36
 Scene SceneOf(Occasion occasion) {
   Scene scene = BuiltInScene();
   if (occasion == Occasion::kAlpha) {
+    scene.objects.erase(scene.objects.begin());  // the slab
     std::erase_if(scene.objects,
                   [](const Object& object) { return std::holds_alternative<Disc>(object.shape); });
     scene.dome.reset();

@@ -60,19 +60,20 @@ TEST_P(EachOccasion, IsJudgedRightly) {
 
 std::string NameOf(const testing::TestParamInfo<Case>& of) { return of.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Inspect, EachOccasion,
-                         testing::Values(Case{Occasion::kNothing, "Nothing", ""},
-                                         Case{Occasion::kView, "View", "view"},
-                                         Case{Occasion::kBackground, "Background", "background"},
-                                         Case{Occasion::kExposure, "Exposure", "exposure"},
-                                         Case{Occasion::kMasks, "Masks", "masks"},
-                                         Case{Occasion::kAlpha, "Alpha", "alpha"},
-                                         Case{Occasion::kRobust, "Robust", "robust"},
-                                         Case{Occasion::kDepth, "Depth", "depth"},
-                                         Case{Occasion::kHdr, "Hdr", "hdr"},
-                                         Case{Occasion::kPoses, "Poses", "poses"},
-                                         Case{Occasion::kFootprint, "Footprint", "footprint"}),
-                         NameOf);
+INSTANTIATE_TEST_SUITE_P(
+    Inspect, EachOccasion,
+    testing::Values(Case{Occasion::kNothing, "Nothing", "unbounded"},
+                    Case{Occasion::kView, "View", "unbounded,view"},
+                    Case{Occasion::kBackground, "Background", "background,unbounded"},
+                    Case{Occasion::kExposure, "Exposure", "exposure,unbounded"},
+                    Case{Occasion::kMasks, "Masks", "masks,unbounded"},
+                    Case{Occasion::kAlpha, "Alpha", "alpha"},
+                    Case{Occasion::kRobust, "Robust", "robust,unbounded"},
+                    Case{Occasion::kDepth, "Depth", "depth,unbounded"},
+                    Case{Occasion::kHdr, "Hdr", "hdr,unbounded"},
+                    Case{Occasion::kPoses, "Poses", "poses,unbounded"},
+                    Case{Occasion::kFootprint, "Footprint", "footprint,unbounded"}),
+    NameOf);
 
 TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
   const test::ScratchFolder folder;
