@@ -61,6 +61,8 @@ void AddSampleCommand(CLI::App& app) {
       "  nerf sample demo                          36 photographs in demo/images\n"
       "  nerf sample demo --views 60 --width 800 --height 600\n"
       "  nerf sample drift --calls-for exposure    exposure and white balance change\n"
+      "  nerf sample far --calls-for footprint     half of the cameras stand four times as far\n"
+      "  nerf sample loose --calls-for poses       poses a little wrong; the true ones beside\n"
       "  nerf train demo                           then train on them");
   command->callback([arguments, views] {
     const sample::Occasion occasion = sample::OccasionFromName(arguments->calls_for);
