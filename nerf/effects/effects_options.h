@@ -54,7 +54,9 @@ struct PosesOptions {
 // Pixels that see much of a surface or little of it, where cameras stand near and far
 // (nerf/effects/footprint.h).
 struct FootprintOptions {
-  double pixels = 1;  // the width of what a pixel averages; 0: a point
+  // The width of what a pixel averages; 0: a point. More than one, for a sample in the middle of a
+  // pixel stands for all of it: 4 was best of 1, 2, 4 and 8 on photographs for validation, with 8.
+  double pixels = 4;
 
   void Check() const;
 };

@@ -32,7 +32,6 @@ constexpr int kEveryToJudgeBy = 8;
 const Color kGloss = Color::Constant(0.8);
 constexpr double kGlossExponent = 6;  // half as bright 27 degrees off
 constexpr double kFarFactor = 4;      // of the distance of cameras, and
-constexpr double kWideDome = 20;      // scene units, which holds those that are far
 
 // The i-th random number of a view, in [-1, 1).
 double Signed(int i, int view, unsigned seed) {
@@ -59,11 +58,8 @@ std::vector<Object> PassersBy(int view, unsigned seed, const Eigen::Isometry3d& 
   return balls;
 }
 
-void Widen(Scene& scene, double dome, double sand) {
-  scene.dome->radius = dome;
-  for (Object& object : scene.objects) {
-    if (Disc* const disc = std::get_if<Disc>(&object.shape)) disc->radius = sand;
-  }
+bool IsCutOut(Occasion occasion) {
+  return occasion == Occasion::kAlpha || occasion == Occasion::kFootprint;
 }
 
 }  // namespace
@@ -80,19 +76,26 @@ std::string OccasionNames() {
   return names;
 }
 
-int UsualViews(Occasion occasion) { return occasion == Occasion::kDepth ? 9 : 36; }
+int UsualViews(Occasion occasion) {
+  if (occasion == Occasion::kDepth) return 9;
+  return occasion == Occasion::kFootprint ? 64 : 36;
+}
 
 Scene SceneOf(Occasion occasion) {
   Scene scene = BuiltInScene();
-  if (occasion == Occasion::kAlpha) {
+  if (IsCutOut(occasion)) {
     scene.objects.erase(scene.objects.begin());  // the slab
     std::erase_if(scene.objects,
                   [](const Object& object) { return std::holds_alternative<Disc>(object.shape); });
     scene.dome.reset();
   }
-  // As far as the eye can tell, without end.
-  if (occasion == Occasion::kBackground) Widen(scene, 1000, 300);
-  if (occasion == Occasion::kFootprint) Widen(scene, kWideDome, kWideDome);
+  if (occasion == Occasion::kBackground) {
+    // As far as the eye can tell, without end.
+    scene.dome->radius = 1000;
+    for (Object& object : scene.objects) {
+      if (Disc* const ground = std::get_if<Disc>(&object.shape)) ground->radius = 300;
+    }
+  }
   for (Object& object : scene.objects) {
     if (occasion == Occasion::kBuiltIn) break;
     object.material.mirror = Color::Zero();
@@ -120,7 +123,7 @@ Photography PhotographyOf(Occasion occasion, int view, unsigned seed,
                           const Eigen::Isometry3d& world_from_camera) {
   Photography photography;
   photography.linear = occasion == Occasion::kHdr;
-  photography.alpha = occasion == Occasion::kAlpha;
+  photography.alpha = IsCutOut(occasion);
   photography.mask = occasion == Occasion::kMasks;
   if (occasion == Occasion::kExposure) {
     photography.gain.setConstant(std::exp2(kStops * Signed(4, view, seed)));

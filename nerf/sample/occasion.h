@@ -22,7 +22,7 @@ enum class Occasion {
   kDepth,       // few photographs: what alone they leave open, sparse points say
   kHdr,         // radiance in EXR files, with much more light than white
   kPoses,       // the poses that come with the photographs are a little wrong
-  kFootprint,   // half of the photographs are taken from four times as far
+  kFootprint,   // a subject cut out by alpha, half of the time from four times as far
 };
 
 // By the names that a person uses: "built-in", "nothing", "view", ...

@@ -35,7 +35,7 @@ RayBatch OneRay(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
 TEST(Footprint, OfAPixelGrowsWithTheDistance) {
   const RayBatch ray = OneRay({-0.5f, 0, 0}, {1, 0, 0}, 0.01f);
   const auto patch = Footprints(ray, std::vector<std::int64_t>{0, 0}, std::vector<float>{0.5f, 1},
-                                FootprintOptions());
+                                FootprintOptions{1});
   // The deviation of a uniform pixel; a unit is a quarter of the cube.
   EXPECT_NEAR(patch[0], 0.25 * 0.01 * 0.5 / std::sqrt(12.0), 1e-8);
   EXPECT_NEAR(patch[1], 2 * patch[0], 1e-8);
@@ -44,7 +44,7 @@ TEST(Footprint, OfAPixelGrowsWithTheDistance) {
 TEST(Footprint, ShrinksAsTheContractionDoesAcrossTheRadius) {
   const RayBatch ray = OneRay({0, 0, 0}, {0, 0, 1}, 0.01f);
   const auto patch =
-      Footprints(ray, std::vector<std::int64_t>{0}, std::vector<float>{8}, FootprintOptions());
+      Footprints(ray, std::vector<std::int64_t>{0}, std::vector<float>{8}, FootprintOptions{1});
   // At distance 8 the sphere of radius 8 has become one of 2 - 1/8.
   EXPECT_NEAR(patch[0], 0.25 * 0.01 * (2 - 1.0 / 8) / std::sqrt(12.0), 1e-8);
 }

@@ -2,11 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
 #include <vector>
 
+#include "nerf/config.h"
 #include "nerf/render/ray_gradient.h"
+#include "nerf/sample/sample_folder.h"
+#include "nerf/train/trainer.h"
+#include "sfm/colmap_model.h"
+#include "sfm/transforms_json.h"
 #include "tests/support/central_differences.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/two_engines.h"
 
 namespace nerf {
@@ -149,6 +159,56 @@ TEST(Poses, GradientsMatchCentralDifferences) {
   for (torch::Tensor parameter : e.poses->parameters()) {
     test::ExpectGradientMatchesCentralDifferences(f, parameter, 1e-7, 2e-5);
   }
+}
+
+// A sample whose poses are wrong, as they should be and as training refines them.
+TEST(Poses, AreFoundByTraining) {
+  const test::ScratchFolder folder;
+  sample::SampleOptions options;
+  options.occasion = sample::Occasion::kPoses;
+  options.views = 24;
+  options.width = 120;
+  options.height = 90;
+  options.samples_per_pixel = 4;
+  sample::WriteSample(folder.path(), options);
+  const sfm::PosedImages truth = sfm::ReadTransformsJson(folder.path() / "truth/poses.json");
+  sfm::PosedImages posed =
+      sfm::ReadColmapModel(folder.path() / "truth/sparse", folder.path() / "images");
+  for (std::size_t i = 0; i < posed.images.size(); ++i) {
+    posed.images[i].split = i % 8 == 0 ? sfm::Split::kValidation : sfm::Split::kTrain;
+  }
+  const sfm::SceneNormalization frame = sfm::NormalizeScene(posed);
+  const Dataset data = LoadDataset(posed, {}, {}, frame);
+  const test::ScratchFolder run;
+  const auto trained = [&](const std::string& poses) {
+    const Config config =
+        LoadConfig("fast", {"march.near_distance=1", "train.steps=500", "effects.poses=" + poses});
+    return std::make_unique<Trainer>(config, FactsOf(data, frame), data, run.path());
+  };
+  const auto refining = trained("{}"), fixed = trained("null");
+  refining->TrySteps(500);
+  fixed->TrySteps(500);
+
+  std::vector<double> before, after;
+  const Poses& poses = *refining->GetModel().poses;
+  for (std::size_t i = 0; i < data.train.size(); ++i) {
+    const auto named = std::ranges::find(truth.images, data.train[i].name, &sfm::PosedImage::name);
+    ASSERT_NE(named, truth.images.end());
+    const auto degrees_off = [&](const Eigen::Isometry3d& pose) {
+      const Eigen::Matrix3d turn =
+          frame.NormalizedFromCamera(named->world_from_camera).linear().transpose() * pose.linear();
+      return Eigen::AngleAxisd(turn).angle() * 180 / std::numbers::pi;
+    };
+    const Eigen::Isometry3d& given = data.train[i].normalized_from_camera;
+    before.push_back(degrees_off(given));
+    after.push_back(degrees_off(poses.Refined(static_cast<std::int64_t>(i), given)));
+  }
+  std::ranges::sort(before);
+  std::ranges::sort(after);
+  EXPECT_GT(before[before.size() / 2], 0.3);
+  EXPECT_LT(after[after.size() / 2], 0.5 * before[before.size() / 2]);
+  // On photographs whose own poses are right.
+  EXPECT_GT(refining->ValidationPsnr(), fixed->ValidationPsnr() + 1);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{Occasion::kDepth, "Depth", "depth,unbounded"},
                     Case{Occasion::kHdr, "Hdr", "hdr,unbounded"},
                     Case{Occasion::kPoses, "Poses", "poses,unbounded"},
-                    Case{Occasion::kFootprint, "Footprint", "footprint,unbounded"}),
+                    Case{Occasion::kFootprint, "Footprint", "alpha,footprint"}),
     NameOf);
 
 TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {

@@ -139,7 +139,7 @@ TEST(Occasion, OfMasksMarksEveryPixelInWhichSomebodyIs) {
   EXPECT_GT(hidden, 100);
 }
 
-TEST(Occasion, OfFootprintIsNearAndFarInTurnAndWithinWhatIsThere) {
+TEST(Occasion, OfFootprintIsNearAndFarInTurn) {
   SampleOptions options = Tiny(Occasion::kFootprint);
   options.views = 36;
   options.samples_per_pixel = 1;
@@ -151,7 +151,6 @@ TEST(Occasion, OfFootprintIsNearAndFarInTurnAndWithinWhatIsThere) {
     far += distance > 6;
     to_judge_by += IsToJudgeBy(i);
     far_to_judge_by += IsToJudgeBy(i) && distance > 6;
-    for (const float depth : capture.views[i].depth.pixels) ASSERT_GT(depth, 0);
   }
   EXPECT_NEAR(far, options.views / 2, 2);
   EXPECT_GE(far_to_judge_by, 2);
