@@ -21,8 +21,8 @@ namespace {
 // What automatic choices act on so far. The evidence for the others is shown, and they are
 // simulated when asked for: on generated captures they have not been worth a decibel yet (README,
 // "Effects"), and to leave directions away has not been measured on real ones.
-const std::set<std::string> kAutomatic = {"exposure", "masks",     "depth",    "near",
-                                          "poses",    "footprint", "unbounded"};
+const std::set<std::string> kAutomatic = {"exposure", "masks",     "depth",     "near",
+                                          "poses",    "footprint", "unbounded", "background"};
 
 // Trials tell what shows early; that colour depends on the direction shows late.
 const std::set<std::string> kTried = {"exposure"};

@@ -15,6 +15,8 @@ namespace {
 
 // From which on a scene calls for an effect.
 constexpr double kBall = 1.5;  // radii; of a larger one the middle is finer where space contracts
+constexpr double kBetween = 0.005;      // share of points that may stand before a background
+constexpr double kRoom = 1.2;           // about the near points, for what has none
 constexpr double kFarAway = 0.007;      // share of points beyond kFar
 constexpr double kFar = 8;              // radii of what the cameras look at
 constexpr double kFewPhotographs = 15;  // before which a point stands
@@ -26,8 +28,7 @@ constexpr double kShareOfTheWay = 0.7;  // to them, in which nothing stands
 
 }  // namespace
 
-Verdict JudgeUnbounded(bool alpha, const std::optional<Ball>& hull) {
-  if (!alpha) return Fact("unbounded", true, 0, "photographs without alpha show surroundings");
+Verdict JudgeUnbounded(const std::optional<Ball>& hull) {
   if (!hull) return Fact("unbounded", true, 0, "what alpha leaves may reach beyond 2 radii");
   return Fact(
       "unbounded", hull->radius > kBall, hull->radius,
@@ -35,22 +36,63 @@ Verdict JudgeUnbounded(bool alpha, const std::optional<Ball>& hull) {
                   hull->radius, kBall));
 }
 
-Verdict JudgeBackground(const sfm::PosedImages& posed,
-                        const sfm::SceneNormalization& normalized_from_world) {
-  std::size_t far = 0;
+PointShares SharesOfPoints(const sfm::PosedImages& posed,
+                           const sfm::SceneNormalization& normalized_from_world) {
+  PointShares shares;
+  std::vector<Eigen::Vector3d> near;
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(kFar), high = -low;
+  const double each = 1 / static_cast<double>(posed.points.size());
   for (const sfm::SparsePoint& point : posed.points) {
-    if (normalized_from_world.NormalizedFromWorld(point.x_in_world).norm() > kFar) ++far;
+    const Eigen::Vector3d x = normalized_from_world.NormalizedFromWorld(point.x_in_world);
+    if (x.norm() > kFar) {
+      shares.far += each;
+    } else if (x.norm() > kBall) {
+      shares.between += each;
+    } else {
+      near.push_back(x);
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
   }
-  const double share = static_cast<double>(far) / static_cast<double>(posed.points.size());
-  return Measured("background", share, kFarAway,
-                  fmt::format("{:.1f} % of the points are more than {:.0f} radii away; {:.1f} % "
-                              "call for it",
-                              100 * share, kFar, 100 * kFarAway));
+  if (near.empty()) return shares;
+  shares.near = {(low + high) / 2, 0};
+  for (const Eigen::Vector3d& x : near) {
+    shares.near.radius = std::max(shares.near.radius, kRoom * (x - shares.near.centre).norm());
+  }
+  return shares;
 }
 
-Verdict JudgeDepth(const sfm::PosedImages& posed) {
+bool IsBeforeBackground(const PointShares& shares) {
+  return shares.far >= kFarAway && shares.between < kBetween && shares.far + shares.between < 1;
+}
+
+Verdict JudgeUnbounded(const PointShares& shares) {
+  const bool bounded = IsBeforeBackground(shares);
+  return Fact("unbounded", !bounded, shares.between,
+              fmt::format("{:.1f} % of the points are from {:.1f} to {:.0f} radii away{}",
+                          100 * shares.between, kBall, kFar,
+                          bounded ? ": nothing before the background" : ""));
+}
+
+Verdict JudgeBackground(const PointShares& shares) {
+  Verdict verdict = Measured(
+      "background", shares.far, kFarAway,
+      fmt::format("{:.1f} % of the points are more than {:.0f} radii away; {:.1f} % call for it{}",
+                  100 * shares.far, kFar, 100 * kFarAway,
+                  shares.far >= kFarAway && !IsBeforeBackground(shares)
+                      ? ", but contracted space holds them with those before them"
+                      : ""));
+  if (!IsBeforeBackground(shares) && verdict.on) {
+    verdict = Fact("background", false, shares.far, verdict.evidence);
+  }
+  return verdict;
+}
+
+Verdict JudgeDepth(const sfm::PosedImages& posed,
+                   const sfm::SceneNormalization& normalized_from_world) {
   std::vector<double> photographs;
   for (const sfm::SparsePoint& point : posed.points) {
+    if (normalized_from_world.NormalizedFromWorld(point.x_in_world).norm() > kFar) continue;
     int before = 0;
     for (const sfm::PosedImage& image : posed.images) {
       const sfm::Camera& camera = posed.cameras[image.camera];
@@ -61,6 +103,7 @@ Verdict JudgeDepth(const sfm::PosedImages& posed) {
     }
     photographs.push_back(before);
   }
+  if (photographs.empty()) return Undecided("depth", "all points are far away");
   const double median = Quantile(photographs, 0.5);
   Verdict verdict =
       Fact("depth", median < kFewPhotographs, median,

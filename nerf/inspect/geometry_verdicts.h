@@ -9,19 +9,32 @@
 
 namespace nerf {
 
-// Whether there is anything beyond a ball about what the cameras look at: only alpha can say that
-// there is not.
+// Whether there is anything beyond a ball about what the cameras look at, of photographs with
+// alpha.
 //   hull  about what alpha leaves, radii; nullopt: it may reach far
-Verdict JudgeUnbounded(bool alpha, const std::optional<Ball>& hull);
+Verdict JudgeUnbounded(const std::optional<Ball>& hull);
 
 // What sparse points and cameras call for by where they are. There is at least one point.
 
-// The share of points far beyond what the cameras look at.
-Verdict JudgeBackground(const sfm::PosedImages& posed,
-                        const sfm::SceneNormalization& normalized_from_world);
+// Where the sparse points are, in radii of what the cameras look at.
+struct PointShares {
+  double far = 0;      // beyond what parallax tells apart
+  double between = 0;  // behind what is near, and not far
+  Ball near;           // about the others, with a margin
+};
+PointShares SharesOfPoints(const sfm::PosedImages& posed,
+                           const sfm::SceneNormalization& normalized_from_world);
 
-// Whether photographs alone leave open where matter stands.
-Verdict JudgeDepth(const sfm::PosedImages& posed);
+// Of photographs without alpha. Where points are near or far and nowhere between, what is far is a
+// background and rays may end at the ball about what is near. Where they are everywhere, contracted
+// space holds the far ones too.
+bool IsBeforeBackground(const PointShares& shares);
+Verdict JudgeUnbounded(const PointShares& shares);
+Verdict JudgeBackground(const PointShares& shares);
+
+// Whether photographs alone leave open where matter stands, of what is not far.
+Verdict JudgeDepth(const sfm::PosedImages& posed,
+                   const sfm::SceneNormalization& normalized_from_world);
 
 // How far points are, in the photographs, from where these cameras would see them: what structure
 // from motion leaves over is a fraction of a pixel or one, and more where poses are wrong.

@@ -55,12 +55,20 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   const PhotographFacts facts = LookAtPhotographs(posed);
   AddFacts(facts, inspection.verdicts);
   const bool alpha = facts.transparent > 0;
-  inspection.normalized_from_world = sfm::NormalizeScene(posed);
-  std::optional<Ball> hull;
-  if (alpha) hull = BallAboutHull(posed, inspection.normalized_from_world, read);
-  inspection.verdicts.push_back(JudgeUnbounded(alpha, hull));
-  if (!inspection.verdicts.back().on) {
-    inspection.normalized_from_world = FittedTo(*hull, inspection.normalized_from_world);
+  const sfm::SceneNormalization frame = sfm::NormalizeScene(posed);
+  inspection.normalized_from_world = frame;
+  PointShares shares;
+  if (alpha) {
+    const std::optional<Ball> hull = BallAboutHull(posed, frame, read);
+    inspection.verdicts.push_back(JudgeUnbounded(hull));
+    if (!inspection.verdicts.back().on) inspection.normalized_from_world = FittedTo(*hull, frame);
+  } else if (posed.points.size() < kFewestPoints) {
+    inspection.verdicts.push_back(
+        Fact("unbounded", true, 0, "photographs without alpha show surroundings"));
+  } else {
+    shares = SharesOfPoints(posed, frame);
+    inspection.verdicts.push_back(JudgeUnbounded(shares));
+    if (IsBeforeBackground(shares)) inspection.normalized_from_world = FittedTo(shares.near, frame);
   }
   if (posed.points.size() < kFewestPoints || posed.images.size() < kFewestPhotographs) {
     const ExifStops exif = ReadExifStops(posed);
@@ -83,11 +91,10 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
   }
   inspection.residuals = ResidualsByAngle(posed, colors, fit);
   inspection.verdicts.push_back(JudgeView(colors, fit));
-  inspection.verdicts.push_back(alpha ? NoBackground()
-                                      : JudgeBackground(posed, inspection.normalized_from_world));
+  inspection.verdicts.push_back(alpha ? NoBackground() : JudgeBackground(shares));
   inspection.verdicts.push_back(JudgeExposure(inspection.stops, "in the same points"));
   inspection.verdicts.push_back(JudgePassers(colors, fit));
-  inspection.verdicts.push_back(JudgeDepth(posed));
+  inspection.verdicts.push_back(JudgeDepth(posed, frame));
   inspection.verdicts.push_back(JudgePoses(posed));
   inspection.verdicts.push_back(JudgeFootprint(posed));
   inspection.verdicts.push_back(JudgeNear(posed, inspection.normalized_from_world));

@@ -21,7 +21,7 @@ constexpr double kCell = 2 * kHalf / kCells;
 // A cell that fewer photographs see, behind what they show, is not known to be empty, and nothing
 // speaks for matter there.
 constexpr int kFewestSights = 2, kShareOfSights = 4;  // the second: one of so many photographs
-constexpr std::size_t kMostPhotographs = 40;           // more hardly cut off more
+constexpr std::size_t kMostPhotographs = 40;          // more hardly cut off more
 constexpr double kMargin = 1.02;  // of the ball, so that nothing stands on its surface
 
 Vector3d Corner(int x, int y, int z) {

@@ -14,10 +14,10 @@ struct Ball {
   double radius = 1;
 };
 
-// A small ball about what the alpha of photographs, 40 at most, leaves: the visual hull, in cells of a
-// sixteenth of the normalized unit. A cell is empty where a photograph sees all of it and nothing
-// but transparent pixels there, and where hardly a photograph sees it.
-// Source: Laurentini 1994, "The visual hull concept for silhouette-based image understanding".
+// A small ball about what the alpha of photographs, 40 at most, leaves: the visual hull, in cells
+// of a sixteenth of the normalized unit. A cell is empty where a photograph sees all of it and
+// nothing but transparent pixels there, and where hardly a photograph sees it. Source: Laurentini
+// 1994, "The visual hull concept for silhouette-based image understanding".
 //   returns  normalized frame; nullopt where cells are left at the border of the cube [-2,2]^3:
 //            then there may be matter beyond
 //   read     called with the number of photographs read

@@ -13,14 +13,22 @@ namespace {
 using Eigen::Vector3d;
 
 const std::vector<std::pair<std::string, Occasion>> kNames = {
-    {"built-in", Occasion::kBuiltIn},  {"nothing", Occasion::kNothing},
-    {"view", Occasion::kView},         {"background", Occasion::kBackground},
-    {"exposure", Occasion::kExposure}, {"masks", Occasion::kMasks},
-    {"alpha", Occasion::kAlpha},       {"robust", Occasion::kRobust},
-    {"depth", Occasion::kDepth},       {"hdr", Occasion::kHdr},
-    {"poses", Occasion::kPoses},       {"footprint", Occasion::kFootprint},
+    {"built-in", Occasion::kBuiltIn},
+    {"nothing", Occasion::kNothing},
+    {"view", Occasion::kView},
+    {"background", Occasion::kBackground},
+    {"unbounded", Occasion::kUnbounded},
+    {"exposure", Occasion::kExposure},
+    {"masks", Occasion::kMasks},
+    {"alpha", Occasion::kAlpha},
+    {"robust", Occasion::kRobust},
+    {"depth", Occasion::kDepth},
+    {"hdr", Occasion::kHdr},
+    {"poses", Occasion::kPoses},
+    {"footprint", Occasion::kFootprint},
 };
 
+constexpr double kPlate = 1.0;            // half width of the plate before nothing but sky
 constexpr double kStops = 1.0;            // by which exposures differ from their mean, at most
 constexpr double kWhiteBalance = 0.15;    // and channels, a part of their light
 constexpr double kPassingDistance = 2.0;  // before the camera, scene units, where it sees
@@ -58,6 +66,8 @@ std::vector<Object> PassersBy(int view, unsigned seed, const Eigen::Isometry3d& 
   return balls;
 }
 
+bool IsGround(const Object& object) { return std::holds_alternative<Disc>(object.shape); }
+
 bool IsCutOut(Occasion occasion) {
   return occasion == Occasion::kAlpha || occasion == Occasion::kFootprint;
 }
@@ -85,16 +95,19 @@ Scene SceneOf(Occasion occasion) {
   Scene scene = BuiltInScene();
   if (IsCutOut(occasion)) {
     scene.objects.erase(scene.objects.begin());  // the slab
-    std::erase_if(scene.objects,
-                  [](const Object& object) { return std::holds_alternative<Disc>(object.shape); });
+    std::erase_if(scene.objects, IsGround);
     scene.dome.reset();
   }
-  if (occasion == Occasion::kBackground) {
-    // As far as the eye can tell, without end.
+  // As far as the eye can tell, without end.
+  if (occasion == Occasion::kBackground || occasion == Occasion::kUnbounded) {
     scene.dome->radius = 1000;
-    for (Object& object : scene.objects) {
-      if (Disc* const ground = std::get_if<Disc>(&object.shape)) ground->radius = 300;
-    }
+  }
+  if (occasion == Occasion::kBackground) {
+    std::get<Box>(scene.objects.front().shape).half_size.head<2>().setConstant(kPlate);
+    std::erase_if(scene.objects, IsGround);
+  }
+  if (occasion == Occasion::kUnbounded) {
+    std::get<Disc>(std::ranges::find_if(scene.objects, IsGround)->shape).radius = 300;
   }
   for (Object& object : scene.objects) {
     if (occasion == Occasion::kBuiltIn) break;

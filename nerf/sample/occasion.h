@@ -14,7 +14,8 @@ enum class Occasion {
   kBuiltIn,     // the built-in scene: mirrors, a sky, a ground to the horizon
   kNothing,     // matt things on sand, under a painted tent: the simplest field is enough
   kView,        // the same with gloss, in which the sun shows broadly
-  kBackground,  // a sky, and ground to the horizon
+  kBackground,  // nothing but a sky without end behind things on a small plate
+  kUnbounded,   // a sky, and ground to the horizon
   kExposure,    // exposure and white balance change from photograph to photograph
   kMasks,       // people pass by, and masks say where
   kAlpha,       // what is not of the subject is transparent
