@@ -7,11 +7,20 @@
 #include "nerf/parallel.h"
 
 namespace nerf {
+namespace {
+
+// As many floats an entry as tables of the optimiser have, of which colours take three. A texel is
+// seen now and then: as a table it is moved only when it is, not by what is left of old steps.
+constexpr std::int64_t kColumns = 4;
+
+}  // namespace
 
 Background::Background(const BackgroundOptions& options, ColorEncoding encoding)
     : rows_(options.resolution), encoding_(encoding) {
-  map_ = register_parameter("map", torch::zeros({2 * std::int64_t{rows_} * rows_, 3}));
+  table_ = register_parameter("table", torch::zeros({2 * std::int64_t{rows_} * rows_, kColumns}));
 }
+
+torch::Tensor Background::Raw() const { return table_.slice(1, 0, 3); }
 
 torch::Tensor Background::forward(const torch::Tensor& directions) {
   TORCH_CHECK(directions.dim() == 2 && directions.size(1) == 3,
@@ -28,24 +37,32 @@ torch::Tensor Background::forward(const torch::Tensor& directions) {
   }
   // Copied, for the way back asks for them when these vectors are gone.
   const torch::Tensor corners =
-      map_.index_select(0, TensorOf(index, {4 * rays}, torch::kLong).clone()).view({rays, 4, 3});
+      Raw().index_select(0, TensorOf(index, {4 * rays}, torch::kLong).clone()).view({rays, 4, 3});
   const torch::Tensor raw =
-      (corners * TensorOf(weight, {rays, 4, 1}, map_.scalar_type()).clone()).sum(1);
+      (corners * TensorOf(weight, {rays, 4, 1}, table_.scalar_type()).clone()).sum(1);
   return encoding_ == ColorEncoding::kSrgb ? torch::sigmoid(raw) : TruncatedExp(raw);
 }
 
 BackgroundMap Background::Map() const {
   const torch::NoGradGuard no_grad;
-  const torch::Tensor raw = map_.detach().to(torch::kFloat).contiguous();
+  const torch::Tensor raw = Raw().detach().to(torch::kFloat).contiguous();
   const auto values = Span<const float>(raw);
   return {rows_, encoding_, {values.begin(), values.end()}};
+}
+
+void Background::Start(std::span<const float> direction, std::span<const float> rgb) {
+  const torch::NoGradGuard no_grad;
+  BackgroundMap map = Map();
+  map.SetToMedians(direction, rgb);
+  Raw().copy_(TensorOf(map.raw, {table_.size(0), 3}, torch::kFloat));
 }
 
 void Background::AddGradient(std::span<const float> dL_draw) {
   const torch::NoGradGuard no_grad;
   const std::vector<float> values(dL_draw.begin(), dL_draw.end());
-  const torch::Tensor gradient = TensorOf(values, map_.sizes(), torch::kFloat).clone();
-  torch::Tensor& into = map_.mutable_grad();
+  const torch::Tensor gradient = torch::zeros_like(table_);
+  gradient.slice(1, 0, 3).copy_(TensorOf(values, {table_.size(0), 3}, torch::kFloat));
+  torch::Tensor& into = table_.mutable_grad();
   into = into.defined() ? into + gradient : gradient;
 }
 

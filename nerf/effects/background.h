@@ -17,7 +17,7 @@ namespace nerf {
 // ray. A map of the world by direction; see BackgroundMap for its form.
 class Background : public torch::nn::Module {
  public:
-  // Starts grey: sRGB-encoded 0.5, linear 1.
+  // Grey before Start: sRGB-encoded 0.5, linear 1.
   Background(const BackgroundOptions& options, ColorEncoding encoding);
 
   // directions [R,3] unit vectors -> [R,3]. Differentiable in the map.
@@ -26,14 +26,20 @@ class Background : public torch::nn::Module {
   // As it is now.
   BackgroundMap Map() const;
 
+  // What training starts from: BackgroundMap::SetToMedians. A map that is right from the start
+  // leaves nothing for fog before it to explain.
+  void Start(std::span<const float> direction, std::span<const float> rgb);
+
   // Adds to the gradient of the map.
   //   dL_draw  [rows, 2 rows, 3]
   void AddGradient(std::span<const float> dL_draw);
 
  private:
+  torch::Tensor Raw() const;  // [rows * 2 rows, 3], of table_
+
   int rows_;
   ColorEncoding encoding_;
-  torch::Tensor map_;  // [rows * 2 rows, 3]
+  torch::Tensor table_;  // [rows * 2 rows, 4], of which three count
 };
 
 // The rays with what the map shows in their directions as their background.

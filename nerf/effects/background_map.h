@@ -25,6 +25,11 @@ struct BackgroundMap {
   //   direction  unit vector
   static Texels TexelsOf(std::span<const float, 3> direction, int rows);
 
+  // Makes each texel the median of the colours that photographs show in its direction; where they
+  // show none, the mean of the texels beside it.
+  //   direction [R,3], rgb [R,3] in the encoding of the field
+  void SetToMedians(std::span<const float> direction, std::span<const float> rgb);
+
   // direction, rgb [R,3]
   void Radiance(std::span<const float> direction, std::span<float> rgb) const;
 

@@ -82,19 +82,24 @@ void PositionBackwardLevel(const HashGridLevel& level, const Real* table, const 
   const Real slope = level_weight * static_cast<Real>(level.resolution);
   for (std::int64_t i = first; i < last; ++i) {
     const Cell<Real> cell = FindCell<Real, kDense>(level, positions + 3 * i);
-    Real sum[3] = {};
+    Real dL_dweight[8] = {};
     for (int k = 0; k < 8; ++k) {
       const Real* entry = table + static_cast<std::int64_t>(cell.entry[k]) * kFeatures;
-      Real dL_dweight = 0;
-      for (int f = 0; f < kFeatures; ++f) dL_dweight += dL_dencoded[i * row + f] * entry[f];
-      const int d[3] = {k & 1, k >> 1 & 1, k >> 2};
-      for (int axis = 0; axis < 3; ++axis) {
-        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-        const Real others = cell.along[b][d[b]] * cell.along[c][d[c]];
-        sum[axis] += d[axis] == 1 ? dL_dweight * others : -dL_dweight * others;
-      }
+      for (int f = 0; f < kFeatures; ++f) dL_dweight[k] += dL_dencoded[i * row + f] * entry[f];
     }
-    for (int axis = 0; axis < 3; ++axis) dL_dposition[3 * i + axis] += slope * sum[axis];
+    // Along an axis the encoding rises by the differences across the cell, interpolated over the
+    // other two.
+    for (int axis = 0; axis < 3; ++axis) {
+      const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+      Real sum = 0;
+      for (int db = 0; db < 2; ++db) {
+        for (int dc = 0; dc < 2; ++dc) {
+          const int low = db << b | dc << c, high = low | 1 << axis;
+          sum += cell.along[b][db] * cell.along[c][dc] * (dL_dweight[high] - dL_dweight[low]);
+        }
+      }
+      dL_dposition[3 * i + axis] += slope * sum;
+    }
   }
 }
 

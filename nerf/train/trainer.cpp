@@ -7,6 +7,7 @@
 #include <span>
 
 #include "nerf/data/pixel_sampler.h"
+#include "nerf/effects/background.h"
 #include "nerf/effects/exposure_fit.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
@@ -76,6 +77,7 @@ struct Trainer::State {
   const TrainOptions& Options() const { return model.config.train; }
 
   void CheckPhotographs() const;
+  void StartBackground();
   StepResult Step();
   StepResult Learn(StepSeconds& seconds);
   void AdaptBatch(std::int64_t shaded);
@@ -111,6 +113,14 @@ void Trainer::State::CheckPhotographs() const {
       "{}: was trained on {} photographs, and now there are {}, or others; put back what it was "
       "trained on, or train again",
       run.string(), names.size(), data.train.size());
+}
+
+void Trainer::State::StartBackground() {
+  constexpr std::int64_t kRaysOfATexel = 32;
+  const std::int64_t rows = model.config.effects.background->resolution;
+  const TargetBatch batch =
+      PixelSampler(data.train).Sample(2 * rows * rows * kRaysOfATexel, Options().seed, 0);
+  model.background->Start(batch.rays.direction, batch.rgb);
 }
 
 // A step with its book-keeping.
@@ -218,6 +228,7 @@ Trainer::Trainer(const Config& config, const SceneFacts& scene, const Dataset& d
                  const std::filesystem::path& run, double spent)
     : state_(std::make_unique<State>(MakeModel(config, scene), data, run, spent)) {
   KeepVisibleCells(*state_->model.grid, data.train);
+  if (state_->model.background) state_->StartBackground();
 }
 
 Trainer::Trainer(const Checkpoint& checkpoint, const Dataset& data,
