@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -67,13 +68,13 @@ TEST_F(EffectsCommands, InspectPrintsAVerdictForEachEffectWithItsEvidence) {
   const auto table = RunNerf("inspect " + Path("exposure/truth/sparse"));
   EXPECT_EQ(table.exit_status, 0);
   for (const char* effect : {"alpha", "hdr", "masks", "view", "background", "exposure", "robust",
-                             "depth", "poses", "footprint"}) {
+                             "depth", "poses", "footprint", "unbounded"}) {
     EXPECT_THAT(table.output, HasSubstr(effect));
   }
   EXPECT_THAT(table.output, HasSubstr("stops"));
   const auto json = RunNerf("inspect --json " + Path("exposure/truth/sparse"));
   const auto root = nlohmann::json::parse(json.output);
-  EXPECT_EQ(root.at("verdicts").size(), 11u);
+  EXPECT_EQ(root.at("verdicts").size(), 12u);
   EXPECT_EQ(root.at("exposure_stops").size(), 17u);
 }
 
@@ -95,7 +96,7 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   EXPECT_THAT(run.output, HasSubstr("what the capture calls for"));
   EXPECT_FALSE(Json("auto/config.json").at("effects").at("exposure").is_null());
   EXPECT_TRUE(Json("auto/config.json").at("effects").at("masks").is_null());
-  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 11u);
+  EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 12u);
   EXPECT_GT(Json("auto/config.json").at("march").at("near_distance"), 0.1);
 
   const auto eval = RunNerf("eval " + Path("auto"));
@@ -111,6 +112,29 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   };
   EXPECT_NE(at("mean", ""), at("as", "--exposure-of view_002.png"));
   ExpectRefused("render " + Path("auto") + " --exposure-of nobody.png", HasSubstr("nobody.png"));
+}
+
+TEST_F(EffectsCommands, RefinedPosesAreToldAndWritten) {
+  const auto run = RunNerf(Train("exposure", "refined", "--effects +poses"));
+  ASSERT_EQ(run.exit_status, 0) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("cameras turned by"));
+  const auto frames = Json("refined/transforms.json").at("frames");
+  const auto refined = Json("refined/refined_transforms.json").at("frames");
+  ASSERT_EQ(refined.size(), frames.size());
+  int moved = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    double change = 0;  // more than reading and writing changes
+    for (int k = 0; k < 12; ++k) {
+      const auto at = [&](const nlohmann::json& frame) {
+        return frame.at("transform_matrix").at(k / 4).at(k % 4).get<double>();
+      };
+      change = std::max(change, std::fabs(at(refined[i]) - at(frames[i])));
+    }
+    moved += change > 1e-9;
+  }
+  EXPECT_GT(moved, 10);
+  EXPECT_LT(moved, 17);  // of those held out nothing is learned
+  EXPECT_EQ(RunNerf("eval " + Path("refined")).exit_status, 0);
 }
 
 TEST_F(EffectsCommands, WhatAPersonSaysStands) {

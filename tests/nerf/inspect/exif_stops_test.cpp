@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "nerf/data/camera.h"
 #include "nerf/inspect/inspect.h"
 #include "tests/support/scratch_folder.h"
 
@@ -19,13 +20,16 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Grey photographs without poses that matter, each with these EXIF entries.
+// Grey photographs side by side, each with these EXIF entries.
 class ExifOfACapture : public testing::Test {
  protected:
   void Add(const std::map<std::string, float>& entries) {
     sfm::PosedImage image;
     image.name = fmt::format("{}.jpg", posed_.images.size());
     image.path = folder_.path() / image.name;
+    image.world_from_camera = Eigen::Isometry3d::Identity();
+    image.world_from_camera.translation().x() = static_cast<double>(posed_.images.size());
+    if (posed_.cameras.empty()) posed_.cameras = {PinholeFromFov(8, 8, 1.0)};
     OIIO::ImageSpec spec(8, 8, 3, OIIO::TypeDesc::UINT8);
     for (const auto& [name, value] : entries) spec.attribute(name, value);
     const std::vector<unsigned char> pixels(8 * 8 * 3, 128);
