@@ -18,9 +18,9 @@
 namespace nerf {
 namespace {
 
-// What automatic choices act on so far. The evidence for the others is shown, and they are
-// simulated when asked for: on generated captures they have not been worth a decibel yet (README,
-// "Effects"), and to leave directions away has not been measured on real ones.
+// What automatic choices act on. The evidence for the others is shown, and they are simulated when
+// asked for: a robust loss may lose where directions show (README, "Effects"), and to leave
+// directions away has not been measured on real captures that call for it.
 const std::set<std::string> kAutomatic = {"exposure", "masks",     "depth",     "near",
                                           "poses",    "footprint", "unbounded", "background"};
 
@@ -77,8 +77,19 @@ EffectsChoice ChooseEffects(const sfm::PosedImages& posed, const std::set<std::s
 }
 
 void PrintEffects(const EffectsChoice& choice, const std::set<std::string>& named) {
-  fmt::print("what the capture calls for ({:.1f} s):\n{}", choice.seconds,
-             TableOf(choice.inspection.verdicts));
+  const std::vector<Verdict>& verdicts = choice.inspection.verdicts;
+  if (choice.inspection.stops.empty()) {
+    // Most is undecided, and the table would be long for what it tells.
+    std::vector<std::string> facts;
+    for (const Verdict& v : verdicts) {
+      if (v.on && v.effect != "unbounded") facts.push_back(v.effect);
+      if (v.decided && !v.on && v.effect == "unbounded") facts.push_back("not " + v.effect);
+    }
+    fmt::print("effects: no sparse points to tell from, so as configured{}{}\n",
+               facts.empty() ? "" : "; and ", Join(facts));
+  } else {
+    fmt::print("what the capture calls for ({:.1f} s):\n{}", choice.seconds, TableOf(verdicts));
+  }
   if (!named.empty()) {
     fmt::print("as asked for, whatever the capture calls for: {}\n",
                Join({named.begin(), named.end()}));

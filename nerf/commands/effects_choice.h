@@ -35,7 +35,7 @@ struct EffectsChoice {
 // Looks at the capture, and says which of the effects that nobody has named are to be simulated.
 EffectsChoice ChooseEffects(const sfm::PosedImages& posed, const std::set<std::string>& named);
 
-// The verdicts, as a table.
+// The verdicts, as a table; a line where there was nothing to tell from.
 void PrintEffects(const EffectsChoice& choice, const std::set<std::string>& named);
 
 // Decides by paired trials, with the effect and without it, what the evidence left open: an effect
