@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "nerf/data/dataset.h"
-#include "nerf/effects/effects_options.h"
+#include "nerf/effects/effects.h"
 #include "nerf/field/field_options.h"
 #include "nerf/kernels/hash_encoding.h"
 #include "nerf/sampling/occupancy_grid.h"

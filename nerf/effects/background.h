@@ -7,7 +7,6 @@
 #include <span>
 
 #include "nerf/effects/background_map.h"
-#include "nerf/effects/effects_options.h"
 #include "nerf/render/ray_renderer.h"
 
 namespace nerf {

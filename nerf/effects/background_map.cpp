@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "nerf/kernels/activations.h"
+#include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
@@ -17,6 +18,11 @@ constexpr float kExpLimit = 15.0f;
 constexpr float kFaintest = 0.01f;
 
 }  // namespace
+
+void BackgroundOptions::Check() const {
+  if (resolution >= 2 && resolution <= 1024) return;
+  throw sfm::InputError("config: effects.background.resolution is {}; use 2 to 1024", resolution);
+}
 
 BackgroundMap::Texels BackgroundMap::TexelsOf(std::span<const float, 3> direction, int rows) {
   const double x = direction[0], y = direction[1];

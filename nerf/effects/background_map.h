@@ -9,6 +9,16 @@
 
 namespace nerf {
 
+// Surroundings without end, behind everything, that differ in each direction (Background).
+struct BackgroundOptions {
+  // Rows of the map; it has twice as many columns. Few photographs look into one direction: of a
+  // finer map each paints its own part, with what stands before the background in it (16 was best
+  // of 8, 16, 32 and 128 on a photograph for validation).
+  int resolution = 16;
+
+  void Check() const;
+};
+
 // Colours by direction, as a map of longitude (about z, columns) and of the angle from the zenith
 // (rows), interpolated between the middles of four texels; what is interpolated goes through the
 // activation of the field's colours, a sigmoid for sRGB-encoded and exp for linear ones. In plain

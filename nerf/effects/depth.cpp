@@ -5,6 +5,7 @@
 #include <string>
 
 #include "nerf/data/camera.h"
+#include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
@@ -14,6 +15,18 @@ constexpr std::size_t kFewestSightings = 3;
 constexpr double kLargestError = 2;  // pixels
 
 }  // namespace
+
+void DepthOptions::Check() const {
+  if (!(share >= 0 && share <= 0.5)) {
+    throw sfm::InputError("config: effects.depth.share is {}; use 0 to 0.5", share);
+  }
+  if (!(weight >= 0)) {
+    throw sfm::InputError("config: effects.depth.weight is {}; use 0 or more", weight);
+  }
+  if (!(delta > 0)) {
+    throw sfm::InputError("config: effects.depth.delta is {}; use more than 0", delta);
+  }
+}
 
 void AddSeenPoints(const sfm::PosedImages& sparse,
                    const sfm::SceneNormalization& normalized_from_world, Dataset& data) {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "nerf/data/dataset.h"
-#include "nerf/effects/effects_options.h"
 #include "sfm/posed_images.h"
 #include "sfm/scene_normalization.h"
 
@@ -18,6 +17,13 @@ namespace nerf {
 // Source: after Deng et al. 2022, "Depth-supervised NeRF", which compares a ray's weights with a
 // normal distribution about its point; the cost of Geman and McClure 1985 lets points that are
 // wrong pull little.
+struct DepthOptions {
+  double share = 0.1;   // of the rays, which go through points
+  double weight = 0.1;  // of their distances' loss against that of colours
+  double delta = 0.1;   // relative error that costs half of the most
+
+  void Check() const;
+};
 
 // Gives each view that is trained on the points that it sees: those that three photographs have
 // seen within two pixels, in the pixel to which its camera projects them.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sfm/input_error.h"
+
 namespace nerf {
 namespace {
 
@@ -15,6 +17,11 @@ constexpr float kCubeFromContracted = 0.25f;
 constexpr float kSharp = 4;
 
 }  // namespace
+
+void FootprintOptions::Check() const {
+  if (pixels >= 0 && pixels <= 8) return;
+  throw sfm::InputError("config: effects.footprint.pixels is {}; use 0 to 8", pixels);
+}
 
 std::vector<float> Footprints(const RayBatch& rays, std::span<const std::int64_t> ray,
                               std::span<const float> t, const FootprintOptions& options) {

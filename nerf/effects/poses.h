@@ -7,8 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "nerf/effects/camera_place.h"
-#include "nerf/effects/effects_options.h"
+#include "nerf/effects/poses_options.h"
 #include "nerf/sampling/rays.h"
 
 namespace nerf {

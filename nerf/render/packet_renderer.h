@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "nerf/effects/effects_options.h"
+#include "nerf/effects/footprint.h"
 #include "nerf/render/field_tile.h"
 #include "nerf/render/packet_placement.h"
 #include "nerf/render/ray_renderer.h"

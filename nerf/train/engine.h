@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "nerf/data/pixel_sampler.h"
-#include "nerf/effects/effects_options.h"
+#include "nerf/effects/depth.h"
+#include "nerf/effects/footprint.h"
+#include "nerf/effects/robust.h"
+#include "nerf/effects/slot.h"
 #include "nerf/kernels/mlp.h"
 #include "nerf/render/ray_renderer.h"
 #include "nerf/sampling/proposal_options.h"
@@ -42,16 +45,16 @@ struct EngineParts {
   MarchOptions march;
   ProposalOptions proposal_options;
   LossOptions loss;
-  std::optional<RobustOptions> robust;
-  std::optional<DepthOptions> depth;
-  std::optional<FootprintOptions> footprint;
   GradientScalingOptions gradient_scaling;
   // Of the networks' products in FusedEngine; LibTorchEngine is exact to float.
   kernels::Precision precision = kernels::Precision::kFloat;
-  // Effects; null where they are not simulated.
-  std::shared_ptr<Background> background;
-  std::shared_ptr<Exposure> exposure;
-  std::shared_ptr<Poses> poses;
+  // Effects; empty where they are not simulated.
+  Slot<std::shared_ptr<Poses>> poses;
+  Slot<std::optional<FootprintOptions>> footprint;
+  Slot<std::shared_ptr<Background>> background;
+  Slot<std::shared_ptr<Exposure>> exposure;
+  Slot<std::optional<RobustOptions>> robust;
+  Slot<std::optional<DepthOptions>> depth;
 };
 
 // Evaluates rays, with gradients or without. Two engines, one meaning: LibTorchEngine composes

@@ -65,7 +65,7 @@ class FusedForward {
 
   std::shared_ptr<OccupancyGrid> grid_;
   MarchOptions march_;
-  std::optional<FootprintOptions> footprint_;
+  Slot<std::optional<FootprintOptions>> footprint_;
   TileField field_;
   std::optional<TileProposal> proposal_;
 };

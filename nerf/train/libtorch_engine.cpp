@@ -247,7 +247,7 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   if (total.requires_grad()) total.backward();
   torch::Tensor of_ray = (rgb.detach() - target).square().mean(1);
   result.squared_error = of_ray.mean().item<double>();
-  if (robust_) of_ray = of_ray * RobustPull(rgb, target, parts_.loss, *robust_);
+  if (robust_) of_ray = of_ray * PullOfRays(rgb, target, parts_.loss, *robust_);
   of_ray = of_ray.to(torch::kFloat).contiguous();
   const auto ray_error = Span<const float>(of_ray);
   result.ray_error.assign(ray_error.begin(), ray_error.end());

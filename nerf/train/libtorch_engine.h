@@ -36,7 +36,7 @@ class LibTorchEngine : public Engine {
                                DensityFunction density);
 
   EngineParts parts_;
-  std::optional<RobustOptions> robust_;  // as it is now
+  Slot<std::optional<RobustOptions>> robust_;  // as it is now
 };
 
 }  // namespace nerf

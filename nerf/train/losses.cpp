@@ -22,13 +22,13 @@ torch::Tensor LossOfRays(const torch::Tensor& predicted, const torch::Tensor& ta
 torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& target,
                         const LossOptions& options, const std::optional<RobustOptions>& robust) {
   const torch::Tensor of_ray = LossOfRays(predicted, target, options);
-  return (robust ? of_ray / (1 + of_ray / robust->scale) : of_ray).mean();
+  return (robust ? RobustLoss(of_ray, *robust) : of_ray).mean();
 }
 
-torch::Tensor RobustPull(const torch::Tensor& predicted, const torch::Tensor& target,
+torch::Tensor PullOfRays(const torch::Tensor& predicted, const torch::Tensor& target,
                          const LossOptions& options, const RobustOptions& robust) {
   const torch::NoGradGuard no_grad;
-  return (1 + LossOfRays(predicted, target, options) / robust.scale).pow(-2);
+  return RobustPull(LossOfRays(predicted, target, options), robust);
 }
 
 }  // namespace nerf

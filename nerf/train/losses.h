@@ -4,21 +4,20 @@
 
 #include <optional>
 
-#include "nerf/effects/effects_options.h"
+#include "nerf/effects/robust.h"
 #include "nerf/train/train_options.h"
 
 namespace nerf {
 
 // Mean over rays and channels of the squared error, or of Huber's: e^2/2 for |e| <= delta,
 // delta (|e| - delta/2) beyond, divided by delta. Source: Huber 1964. Where it is to be robust, the
-// mean over rays of l / (1 + l / scale), l being a ray's mean over channels (RobustOptions).
+// mean over rays of RobustLoss(l), l being a ray's mean over channels.
 //   predicted, target  [R,3]
 torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& target,
                         const LossOptions& options, const std::optional<RobustOptions>& robust);
 
-// The part of each ray's pull that a robust loss leaves, [R]: 1 / (1 + l / scale)^2. Without
-// gradients.
-torch::Tensor RobustPull(const torch::Tensor& predicted, const torch::Tensor& target,
+// The part of each ray's pull that a robust loss leaves, [R]: RobustPull(l). Without gradients.
+torch::Tensor PullOfRays(const torch::Tensor& predicted, const torch::Tensor& target,
                          const LossOptions& options, const RobustOptions& robust);
 
 }  // namespace nerf

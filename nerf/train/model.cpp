@@ -102,9 +102,9 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   Model model;
   model.config = config;
   model.scene = scene;
-  model.field = std::make_shared<RadianceField>(
-      config.encoding, config.field, scene.encoding, config.train.seed,
-      config.effects.view ? ColorModel::kByDirection : ColorModel::kDiffuse);
+  model.field = std::make_shared<RadianceField>(config.encoding, config.field, scene.encoding,
+                                                config.train.seed,
+                                                ColorModelWith(config.effects.view.has_value()));
   model.grid = std::make_shared<OccupancyGrid>(config.occupancy, config.march.StepLength());
   if (UsesProposal(config.march, scene.has_alpha)) {
     model.proposal = std::make_shared<ProposalField>(config.proposal, config.train.seed);

@@ -8,7 +8,7 @@
 
 #include "nerf/config.h"
 #include "nerf/data/image.h"
-#include "nerf/effects/camera_place.h"
+#include "nerf/effects/poses_options.h"
 #include "nerf/kernels/mlp.h"
 #include "sfm/scene_normalization.h"
 

@@ -50,9 +50,9 @@ bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int6
     }
     double pull = 1;  // of the ray's loss that is left
     if (model.robust) {
-      const double excess = 1 + of_ray / (3 * model.robust->scale);
-      of_ray /= excess;
-      pull = 1 / (excess * excess);
+      const double mean = of_ray / 3;
+      of_ray = 3 * RobustLoss(mean, *model.robust);
+      pull = RobustPull(mean, *model.robust);
     }
     for (int c = 0; c < 3; ++c) {
       dL_drgb[3 * r + c] =

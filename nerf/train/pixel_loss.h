@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "nerf/data/pixel_sampler.h"
-#include "nerf/effects/effects_options.h"
+#include "nerf/effects/robust.h"
+#include "nerf/effects/slot.h"
 #include "nerf/train/train_options.h"
 
 namespace nerf {
@@ -15,7 +16,7 @@ namespace nerf {
 // How a photograph comes from what the field shows, and what its difference costs.
 struct PixelModel {
   LossOptions loss;
-  std::optional<RobustOptions> robust;
+  Slot<std::optional<RobustOptions>> robust;
   std::vector<float> gain;  // [photographs,3] of Exposure; empty where that is not simulated
   bool saturates = false;   // where it is: as Exposure::Saturates
 };

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "nerf/field/field_options.h"
+
+namespace nerf {
+
+// Light that a surface sends into one direction and not into another: gloss, mirrors. With it the
+// colour network sees the direction, as spherical harmonics (nerf/kernels/direction_encoding.h);
+// without it that network has no weights for them.
+struct ViewOptions {};
+
+// What the field's colours depend on where the effect is there or is not.
+constexpr ColorModel ColorModelWith(bool view) {
+  return view ? ColorModel::kByDirection : ColorModel::kDiffuse;
+}
+
+}  // namespace nerf
