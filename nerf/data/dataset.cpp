@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <optional>
 
 #include "nerf/data/camera.h"
@@ -66,6 +67,37 @@ bool ShowsSomething(const std::vector<View>& views) {
     }
     return false;
   });
+}
+
+// 1 where a photograph is not white to the end of its scale in any channel, 0 where it is.
+Image NotWhite(const Image& photograph) {
+  Image below(photograph.width, photograph.height, 1, ColorEncoding::kLinear);
+  for (std::size_t i = 0; i < below.pixels.size(); ++i) {
+    const float* const rgb = &photograph.pixels[i * photograph.channels];
+    const bool transparent = photograph.channels == 4 && rgb[3] == 0;
+    below.pixels[i] = transparent || std::max({rgb[0], rgb[1], rgb[2]}) < 1 ? 1.0f : 0.0f;
+  }
+  return below;
+}
+
+// The pixels that are in both; all are in one that is empty.
+std::vector<std::uint32_t> Both(const std::vector<std::uint32_t>& some,
+                                const std::vector<std::uint32_t>& others) {
+  if (some.empty()) return others;
+  std::vector<std::uint32_t> both;
+  std::ranges::set_intersection(some, others, std::back_inserter(both));
+  return both;
+}
+
+// The photographs to be read that are display-referred where others are linear.
+int DisplayReferredAmongLinear(const sfm::PosedImages& posed) {
+  int display = 0, linear = 0;
+  for (const sfm::PosedImage& image : posed.images) {
+    if (image.split == sfm::Split::kTest) continue;
+    const std::optional<ColorEncoding> encoding = ReadColorEncoding(image.path);
+    if (encoding) ++(*encoding == ColorEncoding::kLinear ? linear : display);
+  }
+  return linear > 0 ? display : 0;
 }
 
 // How many photographs may be decoded at once: each takes a float image and another while it is
@@ -195,6 +227,16 @@ Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& 
       }
     }
   }
+  if (options.linear && pixels.encoding == ColorEncoding::kSrgb) {
+    photograph.whole = Both(photograph.whole, WholePixels(NotWhite(pixels), options.downscale));
+    if (photograph.whole.empty()) {
+      throw sfm::InputError(
+          "{}: is white to the end of its scale and says nothing beside linear "
+          "images",
+          image.path.string());
+    }
+    pixels = ToLinear(pixels);
+  }
   pixels = Downscale(pixels, options.downscale);
   return photograph;
 }
@@ -214,13 +256,15 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
   if (masks) CheckMasks(posed);
   std::vector<Loaded> loaded(count);
   const std::int64_t decoders = Decoders(posed, options);
+  data.made_linear = DisplayReferredAmongLinear(posed);
+  const PhotographOptions photographs = {options.downscale, masks, data.made_linear > 0};
   std::atomic<std::int64_t> next = 0;
   ParallelForEach(decoders, [&](std::int64_t) {
     for (std::int64_t i = next++; i < count; i = next++) {
       const sfm::PosedImage& image = posed.images[i];
       if (image.split == sfm::Split::kTest) continue;
       try {
-        Photograph photograph = LoadPhotograph(posed, image, {options.downscale, masks});
+        Photograph photograph = LoadPhotograph(posed, image, photographs);
         loaded[i].encoding = photograph.pixels.encoding;
         loaded[i].has_alpha = HasTransparentPixel(photograph.pixels);
         loaded[i].view = MakeView(posed, image, std::move(photograph), options.downscale,
@@ -231,21 +275,14 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
     }
   });
 
-  std::optional<ColorEncoding> encoding;
   for (std::int64_t i = 0; i < count; ++i) {
     if (!loaded[i].failure.empty()) data.skipped.push_back(loaded[i].failure);
     if (!loaded[i].view) continue;
-    if (encoding && *encoding != loaded[i].encoding) {
-      throw sfm::InputError(
-          "{}: photographs and linear (EXR, HDR) images are mixed; convert them to one kind",
-          posed.images[i].path.string());
-    }
-    encoding = loaded[i].encoding;
+    data.encoding = loaded[i].encoding;
     data.has_alpha = data.has_alpha || loaded[i].has_alpha;
     auto& views = posed.images[i].split == sfm::Split::kValidation ? data.validation : data.train;
     views.push_back(std::move(*loaded[i].view));
   }
-  data.encoding = encoding.value_or(ColorEncoding::kSrgb);
   if (data.train.empty()) {
     throw sfm::InputError("{}: no image is left to train on{}{}", posed.source.string(),
                           data.skipped.empty() ? "" : "; the first failed so: ",

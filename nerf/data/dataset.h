@@ -75,6 +75,7 @@ struct Dataset {
   std::vector<View> validation;
   ColorEncoding encoding = ColorEncoding::kSrgb;
   bool has_alpha = false;            // some pixel is not opaque
+  int made_linear = 0;               // display-referred photographs among linear ones
   std::vector<std::string> skipped;  // photographs that could not be read, with the reason
 };
 
@@ -82,12 +83,14 @@ struct Dataset {
 struct PhotographOptions {
   int downscale = 1;
   std::optional<MaskOptions> masks;
+  bool linear = false;  // display-referred ones too, as far as they are not white to the end of
+                        // their scale: how bright it is there they do not say
 };
 
 // Reads the training and validation photographs on all threads, or on as many as can decode at once
 // within that much memory again, at least one. A photograph that cannot be read is
-// named in `skipped` and left out. Throws sfm::InputError when none is left to train on, when sRGB
-// and linear images are mixed, or when an image is not of its camera's size.
+// named in `skipped` and left out. Where some are linear (EXR, HDR), all are made so. Throws
+// sfm::InputError when none is left to train on, or when an image is not of its camera's size.
 // Pixels that a mask says to ignore are not held, and never drawn.
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
                     const std::optional<MaskOptions>& masks,
@@ -96,7 +99,7 @@ Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
 // One photograph as evaluation and training see it: upright, downscaled, 3 or 4 channels.
 struct Photograph {
   Image pixels;
-  std::vector<std::uint32_t> whole;  // pixels that no mask says to ignore, rising; empty: all
+  std::vector<std::uint32_t> whole;  // pixels that count, rising; empty: all
 };
 Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image,
                           const PhotographOptions& options);

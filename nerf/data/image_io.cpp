@@ -253,6 +253,14 @@ ImageHeader ReadImageHeader(const fs::path& path) {
   return {.width = spec.full_width, .height = spec.full_height, .orientation = Orientation(spec)};
 }
 
+std::optional<ColorEncoding> ReadColorEncoding(const fs::path& path) {
+  try {
+    return IsLinear(*Open(path)) ? ColorEncoding::kLinear : ColorEncoding::kSrgb;
+  } catch (const sfm::InputError&) {
+    return std::nullopt;
+  }
+}
+
 void WriteImage(const fs::path& path, const Image& image) {
   const FileFormat format = FormatOf(path);
   CheckFinite(image, path);

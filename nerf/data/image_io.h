@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "nerf/data/image.h"
 #include "nerf/data/image_convert.h"  // Downscale
@@ -24,6 +25,10 @@ struct ImageHeader {
   int orientation = 1;
 };
 ImageHeader ReadImageHeader(const std::filesystem::path& path);
+
+// What ReadImage will say of the file's colours, without reading the pixels; nullopt where it is no
+// image.
+std::optional<ColorEncoding> ReadColorEncoding(const std::filesystem::path& path);
 
 // Writes by the ending of the name: .png and .jpg as 8-bit sRGB (values rounded and clamped; a
 // linear image passes through the sRGB transfer), .exr as float linear (an sRGB image is linearised

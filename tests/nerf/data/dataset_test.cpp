@@ -100,6 +100,42 @@ TEST_F(LoadedDataset, PixelsToIgnoreAreNotHeld) {
   EXPECT_EQ(data.train[1].HeldNear(15), 7);
 }
 
+TEST_F(LoadedDataset, PhotographsAmongLinearImagesBecomeLinearWhereTheyAreNotWhite) {
+  Image radiance(4, 4, 3, ColorEncoding::kLinear);
+  std::ranges::fill(radiance.pixels, 3.0f);
+  posed_.images[0].path = folder_.path() / "0.exr";
+  WriteImage(posed_.images[0].path, radiance);
+  Image photograph(4, 4, 3);
+  std::ranges::fill(photograph.pixels, 0.5f);
+  std::fill_n(photograph.pixels.begin(), 3 * 4, 1.0f);  // the first row
+  WriteImage(posed_.images[1].path, photograph);
+  MaskTheSecond();  // leaves two rows
+  masks_ = MaskOptions{"ignore"};
+  const Dataset data = Load();
+  EXPECT_EQ(data.encoding, ColorEncoding::kLinear);
+  EXPECT_EQ(data.made_linear, 2);
+  EXPECT_EQ(data.train[0].Held(), 16);
+  EXPECT_EQ(static_cast<float>(data.train[0].rgba[0]), 3.0f);
+  ASSERT_EQ(data.train[1].Held(), 4);  // one row is white, two are masked out
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(data.train[1].PixelOf(k), 4 + k);
+    EXPECT_NEAR(static_cast<float>(data.train[1].rgba[4 * k]), 0.216f, 2e-3f);
+  }
+}
+
+TEST_F(LoadedDataset, AWhitePhotographAmongLinearImagesSaysNothing) {
+  Image radiance(4, 4, 3, ColorEncoding::kLinear);
+  posed_.images[0].path = folder_.path() / "0.exr";
+  WriteImage(posed_.images[0].path, radiance);
+  Image white(4, 4, 3);
+  std::ranges::fill(white.pixels, 1.0f);
+  WriteImage(posed_.images[1].path, white);
+  const Dataset data = Load();
+  EXPECT_EQ(data.train.size(), 2u);
+  ASSERT_EQ(data.skipped.size(), 1u);
+  EXPECT_THAT(data.skipped[0], testing::HasSubstr("001.png"));
+}
+
 TEST_F(LoadedDataset, EmptyPixelsAreTransparent) {
   MaskTheSecond();
   masks_ = MaskOptions{"empty"};
@@ -159,12 +195,6 @@ TEST_F(LoadedDataset, AnImageOfAnotherSizeThanItsCameraIsLeftOut) {
   ASSERT_EQ(data.skipped.size(), 1u);
   EXPECT_THAT(data.skipped[0],
               testing::AllOf(testing::HasSubstr("5x4"), testing::HasSubstr("4x4")));
-}
-
-TEST_F(LoadedDataset, LinearAndDisplayReferredImagesAreNotMixed) {
-  posed_.images[0].path = folder_.path() / "linear.exr";
-  WriteImage(posed_.images[0].path, Image(4, 4, 3, ColorEncoding::kLinear));
-  EXPECT_THROW(Load(), sfm::InputError);
 }
 
 TEST_F(LoadedDataset, HeldOutPhotographsAreNotRead) {
