@@ -19,7 +19,7 @@ constexpr double kDeviation = 1.48;
 // From which on a scene calls for an effect.
 constexpr double kExposureStops = 0.1;   // standard deviation over the photographs
 constexpr double kViewDependent = 0.12;  // share of points
-constexpr double kPassing = 0.02;        // share of sightings that show something else
+constexpr double kPassing = 0.007;       // share of sightings that show something else
 constexpr double kSomethingElse = 0.35;  // log light, and four times what is usual
 
 double Luminance(const Eigen::Vector3f& log_light) { return static_cast<double>(log_light.mean()); }
@@ -82,7 +82,7 @@ Verdict JudgePassers(const TrackColors& colors, const PhotographFit& fit) {
                        static_cast<double>(std::max<std::size_t>(1, colors.seen.size() + other));
   return Measured("robust", share, kPassing,
                   fmt::format("in {:.1f} % of the places where a point should be seen stands "
-                              "something else; {:.0f} % call for it",
+                              "something else; {:.1f} % call for it",
                               100 * share, 100 * kPassing));
 }
 

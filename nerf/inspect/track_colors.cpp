@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
 
@@ -88,13 +89,40 @@ Vector3d CentreOf(const sfm::PosedImages& posed, int photograph) {
   return posed.images[photograph].world_from_camera.translation();
 }
 
+// Where a photograph would see a point.
+std::optional<Vector2d> PlaceIn(const sfm::PosedImages& posed, int photograph, const Vector3d& x) {
+  const sfm::PosedImage& image = posed.images[photograph];
+  const sfm::Camera& camera = posed.cameras[image.camera];
+  const auto pixel = PixelFromPoint(camera, image.world_from_camera.inverse() * x);
+  const bool inside = pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < camera.width &&
+                      pixel->y() < camera.height;
+  return inside ? pixel : std::nullopt;
+}
+
+bool IsSeenBy(const sfm::SparsePoint& point, int photograph) {
+  return std::ranges::find(point.track, photograph, &sfm::TrackElement::image) != point.track.end();
+}
+
+// Whether the photograph that looks at a point from most nearly where this one does sees it. What
+// stands before a point and is of the scene stands there for the neighbour too.
+bool NeighbourSees(const sfm::PosedImages& posed, int point, int photograph) {
+  int neighbour = -1;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int other = 0; other < static_cast<int>(posed.images.size()); ++other) {
+    if (other == photograph || !PlaceIn(posed, other, posed.points[point].x_in_world)) continue;
+    const double angle = AngleAt(posed, point, photograph, other);
+    if (angle < smallest) {
+      smallest = angle;
+      neighbour = other;
+    }
+  }
+  return neighbour >= 0 && IsSeenBy(posed.points[point], neighbour);
+}
+
 // The places in a photograph where points should be seen that are not in its tracks.
 std::vector<std::pair<int, Vector2d>> Expected(const sfm::PosedImages& posed, int photograph,
                                                double nearby) {
-  const sfm::PosedImage& image = posed.images[photograph];
-  const sfm::Camera& camera = posed.cameras[image.camera];
-  const Eigen::Isometry3d camera_from_world = image.world_from_camera.inverse();
-  KnownParts known(camera);
+  KnownParts known(posed.cameras[posed.images[photograph].camera]);
   std::vector<std::pair<int, Vector2d>> candidates;
   for (int p = 0; p < static_cast<int>(posed.points.size()); ++p) {
     const sfm::SparsePoint& point = posed.points[p];
@@ -103,17 +131,16 @@ std::vector<std::pair<int, Vector2d>> Expected(const sfm::PosedImages& posed, in
       known.Add(in_track->pixel);
       continue;
     }
-    const auto pixel = PixelFromPoint(camera, camera_from_world * point.x_in_world);
-    if (!pixel || !(pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < camera.width &&
-                    pixel->y() < camera.height)) {
-      continue;
-    }
+    const auto pixel = PlaceIn(posed, photograph, point.x_in_world);
+    if (!pixel) continue;
     const auto near = std::ranges::count_if(point.track, [&](const sfm::TrackElement& seen) {
       return AngleAt(posed, p, photograph, seen.image) < nearby;
     });
     if (near >= kFewestNearby) candidates.emplace_back(p, *pixel);
   }
-  std::erase_if(candidates, [&](const auto& candidate) { return !known.IsVoid(candidate.second); });
+  std::erase_if(candidates, [&](const auto& candidate) {
+    return !known.IsVoid(candidate.second) || !NeighbourSees(posed, candidate.first, photograph);
+  });
   return candidates;
 }
 

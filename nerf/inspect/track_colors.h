@@ -21,8 +21,9 @@ struct Sighting {
 struct TrackColors {
   std::vector<Sighting> seen;    // of the points' tracks
   std::vector<Sighting> unseen;  // where no track says so though photographs from nearby see the
-                                 // point, in a part of the photograph without any known point:
-                                 // what is of the scene and stands before it has points of its own
+                                 // point, the nearest among them, in a part of the photograph
+                                 // without any known point: what is of the scene and stands before
+                                 // it has points of its own, or stands before the neighbour's, too
 };
 
 // Reads each photograph once, on all threads. Light is the mean over a few pixels; places that are
