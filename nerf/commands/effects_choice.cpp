@@ -1,84 +1,67 @@
 #include "nerf/commands/effects_choice.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
+#include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <sstream>
+#include <utility>
 
-#include "nerf/config.h"
+#include "nerf/commands/effects_trials.h"
 #include "nerf/stopwatch.h"
-#include "nerf/train/effect_trial.h"
 #include "sfm/atomic_file.h"
-#include "sfm/input_error.h"
 #include "sfm/progress.h"
 
 namespace nerf {
 namespace {
 
-// What automatic choices act on. The evidence for the others is shown, and they are simulated when
-// asked for: a robust loss may lose where directions show (README, "Effects"), and to leave
-// directions away has not been measured on real captures that call for it.
-const std::set<std::string> kAutomatic = {"exposure", "masks",     "depth",     "near",
-                                          "poses",    "footprint", "unbounded", "background"};
-
-// Trials tell what shows early; that colour depends on the direction shows late.
-const std::set<std::string> kTried = {"exposure"};
-constexpr int kTrialSteps = 200;
-constexpr std::int64_t kTrialSamples = 16384;  // a step
-constexpr double kWorthIt = 0.2;               // dB, more than the noise of a trial
-constexpr double kSureEnough = 0.5;
-constexpr double kShortestBudget = 120;  // seconds; of a shorter one trials would take too much
-
-std::string Join(const std::vector<std::string>& names) {
-  return fmt::format("{}", fmt::join(names, ", "));
+// What photographs and files are needs no choice.
+bool IsChosen(const Verdict& verdict) {
+  return verdict.effect != "alpha" && verdict.effect != "hdr";
 }
 
 }  // namespace
 
-EffectsRequest ParseEffects(const std::string& text) {
-  if (text == "auto") return {};
-  if (text == "config") return {false, {}};
-  EffectsRequest request;
-  const std::vector<std::string> known = EffectNames();
-  std::istringstream list(text);
-  for (std::string word; std::getline(list, word, ',');) {
-    const bool on = word.starts_with('+'), off = word.starts_with('-');
-    const std::string name = word.substr(on || off ? 1 : 0);
-    if ((!on && !off) || std::ranges::find(known, name) == known.end()) {
-      throw sfm::InputError(
-          "--effects {}: '{}' is none; use auto, config, or a list like +exposure,-view of {}",
-          text, word, Join(known));
-    }
-    request.assignments.push_back(EffectAssignment(name, on ? "{}" : "null"));
-  }
-  return request;
-}
-
-EffectsChoice ChooseEffects(const sfm::PosedImages& posed, const std::set<std::string>& named) {
+EffectsChoice::EffectsChoice(const sfm::PosedImages& posed, std::set<std::string> named)
+    : named_(std::move(named)) {
   const Stopwatch watch;
-  EffectsChoice choice;
-  {
-    sfm::ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
-    choice.inspection = Inspect(posed, [&](int read) { progress.Update(read); });
-    progress.Finish();
-    const std::string& warning = choice.inspection.warning;
-    if (!warning.empty()) spdlog::warn("{}", warning);
+  sfm::ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
+  inspection_ = Inspect(posed, [&](int read) { progress.Update(read); });
+  progress.Finish();
+  if (!inspection_.warning.empty()) spdlog::warn("{}", inspection_.warning);
+  for (const Verdict& verdict : inspection_.verdicts) {
+    if (!IsChosen(verdict) || named_.contains(verdict.effect) || !verdict.IsSure()) continue;
+    assignments_.push_back(verdict.assignment);
   }
-  for (const Verdict& verdict : choice.inspection.verdicts) {
-    const bool acts = kAutomatic.contains(verdict.effect) && !named.contains(verdict.effect);
-    if (!acts || verdict.Sure() < kSureEnough) continue;
-    choice.assignments.push_back(verdict.assignment);
-  }
-  choice.seconds = watch.Seconds();
-  return choice;
+  seconds_ = watch.Seconds();
 }
 
-void PrintEffects(const EffectsChoice& choice, const std::set<std::string>& named) {
-  const std::vector<Verdict>& verdicts = choice.inspection.verdicts;
-  if (choice.inspection.stops.empty()) {
+std::vector<double> EffectsChoice::StopsOfTrained(const sfm::PosedImages& posed,
+                                                  const Dataset& data) const {
+  std::map<std::string, double> stops_of;
+  for (std::size_t i = 0; i < inspection_.stops.size(); ++i) {
+    stops_of[posed.images[i].name] = inspection_.stops[i];
+  }
+  std::vector<double> stops;
+  for (const View& view : data.train) {
+    if (const auto found = stops_of.find(view.name); found != stops_of.end()) {
+      stops.push_back(found->second);
+    }
+  }
+  return stops.size() == data.train.size() ? stops : std::vector<double>();
+}
+
+void EffectsChoice::Try(const Config& config, const SceneFacts& scene, Dataset& data) {
+  const EffectTrials trials = TryWhatIsOpen(config, scene, named_, data, inspection_.verdicts);
+  assignments_.insert(assignments_.end(), trials.assignments.begin(), trials.assignments.end());
+  trial_seconds_ = trials.seconds;
+}
+
+void EffectsChoice::Print() const {
+  const std::vector<Verdict>& verdicts = inspection_.verdicts;
+  if (inspection_.stops.empty()) {
     // Most is undecided, and the table would be long for what it tells.
     std::vector<std::string> facts;
     for (const Verdict& v : verdicts) {
@@ -86,65 +69,31 @@ void PrintEffects(const EffectsChoice& choice, const std::set<std::string>& name
       if (v.decided && !v.on && v.effect == "unbounded") facts.push_back("not " + v.effect);
     }
     fmt::print("effects: no sparse points to tell from, so as configured{}{}\n",
-               facts.empty() ? "" : "; and ", Join(facts));
+               facts.empty() ? "" : "; and ", fmt::join(facts, ", "));
   } else {
-    fmt::print("what the capture calls for ({:.1f} s):\n{}", choice.seconds, TableOf(verdicts));
+    fmt::print("what the capture calls for ({:.1f} s):\n{}", seconds_, TableOf(verdicts));
   }
-  if (!named.empty()) {
-    fmt::print("as asked for, whatever the capture calls for: {}\n",
-               Join({named.begin(), named.end()}));
+  if (!named_.empty()) {
+    fmt::print("as asked for, whatever the capture calls for: {}\n", fmt::join(named_, ", "));
   }
   std::fflush(stdout);
 }
 
-void TryWhatIsOpen(const Config& config, const SceneFacts& scene, const Dataset& data,
-                   const std::set<std::string>& named, EffectsChoice& choice) {
-  const double budget = config.train.time_budget;
-  if (data.validation.empty() || (budget > 0 && budget < kShortestBudget)) return;
-  const Stopwatch watch;
-  Config trial = config;
-  trial.train.samples_per_batch = kTrialSamples;
-  std::optional<TrialResult> without;
-  for (Verdict& verdict : choice.inspection.verdicts) {
-    const bool open = verdict.Sure() < kSureEnough;
-    if (!open || !kTried.contains(verdict.effect) || named.contains(verdict.effect)) continue;
-    const auto psnr = [&](const char* setting) {
-      return TryConfig(WithEffect(trial, verdict.effect, setting), scene, data, kTrialSteps);
-    };
-    if (!without || Simulates(config, verdict.effect)) without = psnr("null");
-    const TrialResult with = psnr("{}");
-    verdict.figure = with.psnr - without->psnr;
-    verdict.threshold = kWorthIt;
-    verdict.decided = true;
-    verdict.on = verdict.figure >= kWorthIt;
-    verdict.assignment = EffectAssignment(verdict.effect, verdict.on ? "{}" : "null");
-    verdict.evidence = fmt::format("{}; tried: {:.2f} dB with it, {:.2f} dB without",
-                                   verdict.evidence, with.psnr, without->psnr);
-    choice.assignments.push_back(verdict.assignment);
-    fmt::print("{:<11} {:<9} {:>5}  {}\n", verdict.effect, verdict.on ? "on" : "off", "",
-               verdict.evidence);
-  }
-  choice.trial_seconds = watch.Seconds();
-  if (without) fmt::print("tried for {:.1f} s\n", choice.trial_seconds);
-  std::fflush(stdout);
-}
-
-void WriteEffects(const EffectsChoice& choice, const std::set<std::string>& named,
-                  const std::filesystem::path& run) {
+void EffectsChoice::Write(const std::filesystem::path& run) const {
   nlohmann::json verdicts = nlohmann::json::array();
-  for (const Verdict& v : choice.inspection.verdicts) {
+  for (const Verdict& v : inspection_.verdicts) {
     verdicts.push_back({{"effect", v.effect},
                         {"evidence", v.evidence},
                         {"decided", v.decided},
                         {"on", v.on},
                         {"sure", v.Sure()},
-                        {"asked_for", named.contains(v.effect)}});
+                        {"asked_for", named_.contains(v.effect)}});
   }
   const nlohmann::json root = {{"verdicts", verdicts},
-                               {"asked_for", named},
-                               {"assignments", choice.assignments},
-                               {"seconds", choice.seconds},
-                               {"trial_seconds", choice.trial_seconds}};
+                               {"asked_for", named_},
+                               {"assignments", assignments_},
+                               {"seconds", seconds_},
+                               {"trial_seconds", trial_seconds_}};
   sfm::WriteFileAtomically(run / "effects.json", root.dump(2) + "\n");
 }
 

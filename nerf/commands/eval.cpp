@@ -12,6 +12,7 @@
 
 #include "nerf/commands/commands.h"
 #include "nerf/commands/effects_worth.h"
+#include "nerf/commands/eval_scores.h"
 #include "nerf/commands/threads.h"
 #include "nerf/data/camera.h"
 #include "nerf/data/dataset.h"
@@ -19,7 +20,6 @@
 #include "nerf/data/image_metrics.h"
 #include "nerf/effects/exposure_fit.h"
 #include "nerf/output/contact_sheet.h"
-#include "nerf/peak_memory.h"
 #include "nerf/render/image_renderer.h"
 #include "nerf/stopwatch.h"
 #include "nerf/train/run_folder.h"
@@ -38,35 +38,11 @@ struct EvalArguments {
   std::string output;
   std::string split = "test";
   double quality = 1;
+  bool fit_exposure = false;
   bool effects = false;
   int effects_steps = 500;
   int threads = 0;
   bool json = false;
-};
-
-struct Score {
-  std::string name;
-  double psnr = 0, ssim = 0, seconds = 0;
-};
-
-// What the views took, all together.
-struct Cost {
-  std::int64_t views = 0, pixels = 0, samples = 0;
-  StageSeconds seconds;
-  double reading = 0;  // seconds, of photographs
-
-  void Add(const RenderedView& view) {
-    ++views;
-    pixels += static_cast<std::int64_t>(view.rgb.width) * view.rgb.height;
-    samples += view.samples;
-    seconds.Add(view.seconds);
-  }
-  double SamplesPerRay() const {
-    return static_cast<double>(samples) / static_cast<double>(pixels);
-  }
-  double PerView(double seconds_of_all) const {
-    return seconds_of_all / static_cast<double>(views);
-  }
 };
 
 // Of the contact sheet: whoever looks at pictures looks at no more, and memory stays bounded.
@@ -75,22 +51,6 @@ constexpr std::size_t kMostRows = 50;
 sfm::Split SplitFromName(const std::string& name) {
   if (name == "train") return sfm::Split::kTrain;
   return name == "validation" ? sfm::Split::kValidation : sfm::Split::kTest;
-}
-
-// JSON has no infinity; equal images are said in words.
-nlohmann::json JsonNumber(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json("inf");
-}
-
-Score MeanOf(const std::vector<Score>& scores) {
-  Score mean{"mean", 0, 0, 0};
-  for (const Score& s : scores) {
-    mean.psnr += s.psnr;
-    mean.ssim += s.ssim;
-    mean.seconds += s.seconds;
-  }
-  const auto count = static_cast<double>(scores.size());
-  return {mean.name, mean.psnr / count, mean.ssim / count, mean.seconds / count};
 }
 
 // Nobody knows the exposure of a photograph that training never saw: it is fitted, one gain a
@@ -112,52 +72,6 @@ double Ignore(const std::vector<std::uint32_t>& whole, const Image& truth, Image
   rendered = std::move(counted);
   const double all = static_cast<double>(truth.width) * truth.height;
   return 10 * std::log10(all / static_cast<double>(whole.size()));
-}
-
-nlohmann::json JsonFromScores(const OpenedRun& run, const EvalArguments& arguments,
-                              const std::vector<Score>& scores, const Cost& cost,
-                              std::size_t left_out) {
-  const Score mean = MeanOf(scores);
-  nlohmann::json images = nlohmann::json::array();
-  for (const Score& s : scores) {
-    images.push_back(
-        {{"name", s.name}, {"psnr", JsonNumber(s.psnr)}, {"ssim", s.ssim}, {"seconds", s.seconds}});
-  }
-  return {{"split", arguments.split},
-          {"downscale", run.model.config.data.downscale},
-          {"quality", arguments.quality},
-          {"exposure_fitted", run.model.exposure != nullptr},
-          {"step", run.step},
-          {"training_seconds", run.training_seconds},
-          {"psnr", JsonNumber(mean.psnr)},
-          {"ssim", mean.ssim},
-          {"seconds_per_frame", mean.seconds},
-          {"stage_seconds_per_frame",
-           {{"sampling", cost.PerView(cost.seconds.sampling)},
-            {"encoding", cost.PerView(cost.seconds.encoding)},
-            {"networks", cost.PerView(cost.seconds.networks)},
-            {"compositing", cost.PerView(cost.seconds.compositing)},
-            {"reading_photographs", cost.PerView(cost.reading)}}},
-          {"samples_per_ray", cost.SamplesPerRay()},
-          {"peak_megabytes", PeakMegabytes()},
-          {"left_out", left_out},
-          {"images", images}};
-}
-
-void PrintTable(const std::vector<Score>& scores, const Cost& cost) {
-  std::size_t width = 5;
-  for (const Score& s : scores) width = std::max(width, s.name.size());
-  fmt::print("{:<{}}  {:>8}  {:>7}  {:>9}\n", "image", width, "PSNR dB", "SSIM", "seconds");
-  const auto row = [width](const Score& s) {
-    fmt::print("{:<{}}  {:>8.2f}  {:>7.4f}  {:>9.2f}\n", s.name, width, s.psnr, s.ssim, s.seconds);
-  };
-  for (const Score& s : scores) row(s);
-  row(MeanOf(scores));
-  fmt::print("{:.1f} samples a ray, {:.0f} MB at most\n", cost.SamplesPerRay(), PeakMegabytes());
-  if (cost.seconds.Sum() == 0) return;  // of a renderer that does not tell
-  fmt::print("of a frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, rest {:.2f} s\n",
-             cost.PerView(cost.seconds.sampling), cost.PerView(cost.seconds.encoding),
-             cost.PerView(cost.seconds.networks), cost.PerView(cost.seconds.compositing));
 }
 
 void RunEval(const EvalArguments& arguments) {
@@ -183,6 +97,7 @@ void RunEval(const EvalArguments& arguments) {
 
   const SceneFacts& scene = run.model.scene;
   const int downscale = run.model.config.data.downscale;
+  const bool fit_exposure = arguments.fit_exposure || run.model.exposure;
   sfm::ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
   std::vector<Score> scores;
   std::vector<ContactSheetRow> rows;
@@ -208,7 +123,7 @@ void RunEval(const EvalArguments& arguments) {
                    DisplayBackground(scene.has_alpha), scene.encoding);
     const double seconds = watch.Seconds();
     cost.Add(view);
-    if (run.model.exposure) FitExposure(truth, view.rgb);
+    if (fit_exposure) FitExposure(truth, view.rgb);
     const double of_ignored = Ignore(whole, truth, view.rgb);
     const double psnr = Psnr(truth, view.rgb) - of_ignored;
     scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds});
@@ -227,8 +142,14 @@ void RunEval(const EvalArguments& arguments) {
                           arguments.split);
   }
 
-  const nlohmann::json result =
-      JsonFromScores(run, arguments, scores, cost, images.size() - scores.size());
+  nlohmann::json result = JsonFromScores(scores, cost);
+  result.update({{"split", arguments.split},
+                 {"downscale", downscale},
+                 {"quality", arguments.quality},
+                 {"exposure_fitted", fit_exposure},
+                 {"step", run.step},
+                 {"training_seconds", run.training_seconds},
+                 {"left_out", images.size() - scores.size()}});
   // Names of files need not be UTF-8.
   const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
   sfm::WriteFileAtomically(output / "eval.json", text + "\n");
@@ -236,8 +157,8 @@ void RunEval(const EvalArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}\n", text);
   } else {
-    PrintTable(scores, cost);
-    if (run.model.exposure) fmt::print("each rendering at its photograph's exposure, fitted\n");
+    PrintScores(scores, cost);
+    if (fit_exposure) fmt::print("each rendering at its photograph's exposure, fitted\n");
     fmt::print("{}\n", (output / "contact_sheet.png").string());
   }
 }
@@ -257,6 +178,9 @@ void AddEvalCommand(CLI::App& app) {
       ->add_option("--quality", arguments->quality,
                    "0, fast, to 1, exact; what each costs stands in the README")
       ->capture_default_str();
+  command->add_flag("--fit-exposure", arguments->fit_exposure,
+                    "compare each rendering at its photograph's exposure, as runs that simulate "
+                    "exposures always are, so that others can be compared with them");
   command->add_flag("--effects", arguments->effects,
                     "instead: what each simulated effect is worth and costs, by short trainings");
   command

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,8 +13,8 @@
 #include "nerf/commands/threads.h"
 #include "nerf/data/image_io.h"
 #include "nerf/inspect/picture.h"
-#include "sfm/input_error.h"
 #include "sfm/masks.h"
+#include "sfm/photo_folder.h"
 #include "sfm/pose_input.h"
 #include "sfm/progress.h"
 
@@ -41,20 +42,39 @@ nlohmann::json JsonFrom(const sfm::PosedImages& posed, const Inspection& inspect
   return {{"verdicts", verdicts}, {"exposure_stops", exposures}};
 }
 
+// Plain photographs, whose poses are yet to be found.
+sfm::PosedImages WithoutPoses(const std::filesystem::path& folder) {
+  sfm::PosedImages photographs;
+  photographs.source = folder;
+  for (const std::filesystem::path& path : sfm::ListPhotos(folder)) {
+    sfm::PosedImage image;
+    image.name = path.filename().string();
+    image.path = path;
+    image.upright_by_exif = true;
+    photographs.images.push_back(image);
+  }
+  return photographs;
+}
+
 void RunInspect(const InspectArguments& arguments) {
   UseThreads(arguments.threads);
   const sfm::InputLocation location = sfm::FindInput(arguments.input);
-  if (location.kind == sfm::InputKind::kPhotos) {
-    throw sfm::InputError(
-        "{}: plain photographs have no poses yet; nerf train finds them and inspects, or run nerf "
-        "poses first",
+  const bool has_poses = location.kind != sfm::InputKind::kPhotos;
+  sfm::PosedImages posed =
+      has_poses ? sfm::ReadPosedInput(location) : WithoutPoses(location.images);
+  sfm::FindMasks(posed);
+  Inspection inspection;
+  if (has_poses) {
+    sfm::ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
+    inspection = Inspect(posed, [&](int read) { progress.Update(read); });
+    progress.Finish();
+  } else {
+    inspection = InspectPhotographs(posed);
+    spdlog::warn(
+        "{}: plain photographs have no poses yet, which tell most; nerf poses finds them, and "
+        "nerf train looks again when it has them",
         arguments.input);
   }
-  sfm::PosedImages posed = sfm::ReadPosedInput(location);
-  sfm::FindMasks(posed);
-  sfm::ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
-  const Inspection inspection = Inspect(posed, [&](int read) { progress.Update(read); });
-  progress.Finish();
   if (!inspection.warning.empty()) spdlog::warn("{}", inspection.warning);
   if (!arguments.picture.empty()) WriteImage(arguments.picture, PictureOf(inspection));
   if (arguments.json) {
@@ -73,7 +93,8 @@ void AddInspectCommand(CLI::App& app) {
   const auto arguments = std::make_shared<InspectArguments>();
   command
       ->add_option("input", arguments->input,
-                   "COLMAP project (its sparse points tell most), transforms.json, or LLFF folder")
+                   "COLMAP project (its sparse points tell most), transforms.json, LLFF folder, or "
+                   "photographs, which tell least")
       ->required();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");

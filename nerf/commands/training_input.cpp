@@ -123,6 +123,12 @@ Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
     for (const std::string& reason : data.skipped) spdlog::warn("{}", reason);
     spdlog::warn("{} images could not be read and are left out", data.skipped.size());
   }
+  if (data.made_linear > 0) {
+    spdlog::warn(
+        "{} of the photographs are display-referred (JPEG, PNG) among linear ones (EXR, HDR); they "
+        "are made linear, and say nothing where they are white",
+        data.made_linear);
+  }
   if (config.effects.depth) {
     const sfm::PosedImages sparse =
         sfm::ReadColmapModel(SparsePath(run), ImageFolder(posed.images.front()));

@@ -47,7 +47,34 @@ void AddFacts(const PhotographFacts& facts, std::vector<Verdict>& verdicts) {
       cut_out ? R"({"meaning": "empty"})" : R"({"meaning": "ignore"})"));
 }
 
+// What cannot be told without sparse points; of exposures, EXIF may tell.
+void AddUndecided(const sfm::PosedImages& posed, bool alpha, const std::string& why,
+                  Inspection& inspection) {
+  const ExifStops exif = ReadExifStops(posed);
+  inspection.stops = exif.stops;
+  inspection.warning = exif.contradiction;
+  std::vector<Verdict>& verdicts = inspection.verdicts;
+  verdicts.push_back(Undecided("view", why));
+  verdicts.push_back(alpha ? NoBackground() : Undecided("background", why));
+  verdicts.push_back(exif.stops.empty() ? Undecided("exposure", why)
+                                        : JudgeExposure(exif.stops, "by their EXIF"));
+  for (const char* effect : {"robust", "depth", "poses", "footprint"}) {
+    verdicts.push_back(Undecided(effect, why));
+  }
+}
+
 }  // namespace
+
+Inspection InspectPhotographs(const sfm::PosedImages& photographs) {
+  CheckMasks(photographs);
+  const PhotographFacts facts = LookAtPhotographs(photographs);
+  constexpr char kWhy[] = "no poses yet to tell from";
+  Inspection inspection;
+  AddFacts(facts, inspection.verdicts);
+  inspection.verdicts.push_back(Undecided("unbounded", kWhy));
+  AddUndecided(photographs, facts.transparent > 0, kWhy, inspection);
+  return inspection;
+}
 
 Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read) {
   CheckMasks(posed);
@@ -71,17 +98,7 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
     if (IsBeforeBackground(shares)) inspection.normalized_from_world = FittedTo(shares.near, frame);
   }
   if (posed.points.size() < kFewestPoints || posed.images.size() < kFewestPhotographs) {
-    const ExifStops exif = ReadExifStops(posed);
-    inspection.stops = exif.stops;
-    inspection.warning = exif.contradiction;
-    inspection.verdicts.push_back(Undecided("view"));
-    inspection.verdicts.push_back(alpha ? NoBackground() : Undecided("background"));
-    inspection.verdicts.push_back(exif.stops.empty() ? Undecided("exposure")
-                                                     : JudgeExposure(exif.stops, "by their EXIF"));
-    inspection.verdicts.push_back(Undecided("robust"));
-    inspection.verdicts.push_back(Undecided("depth"));
-    inspection.verdicts.push_back(Undecided("poses"));
-    inspection.verdicts.push_back(Undecided("footprint"));
+    AddUndecided(posed, alpha, "no sparse points to tell from", inspection);
     return inspection;
   }
   const TrackColors colors = ReadTrackColors(posed, kNearby, read);

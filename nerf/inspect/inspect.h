@@ -30,4 +30,9 @@ struct Inspection {
 // Throws sfm::InputError naming a mask that is broken.
 Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read = {});
 
+// What photographs alone tell, before their poses are known: alpha, linear radiance, masks, EXIF.
+//   photographs  without poses and cameras
+// Throws sfm::InputError naming a mask that is broken.
+Inspection InspectPhotographs(const sfm::PosedImages& photographs);
+
 }  // namespace nerf

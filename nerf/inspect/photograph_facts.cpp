@@ -62,7 +62,7 @@ PhotographFacts LookAtPhotographs(const sfm::PosedImages& posed) {
       continue;  // training names it and leaves it out
     }
     ++facts.looked_at;
-    facts.linear = photograph.encoding == ColorEncoding::kLinear;
+    facts.linear = facts.linear || photograph.encoding == ColorEncoding::kLinear;
     sums.Add(photograph);
     if (image.mask.empty()) continue;
     sums.AddMasked(ToSrgb(photograph), ReadMask(image.mask, photograph.width, photograph.height,

@@ -41,14 +41,27 @@ Verdict Undecided(const std::string& effect, const std::string& evidence) {
   return verdict;
 }
 
+Verdict Tried(Verdict verdict, double psnr_with, double psnr_without, double worth_it) {
+  verdict.figure = psnr_with - psnr_without;
+  verdict.threshold = worth_it;
+  verdict.decided = true;
+  verdict.on = verdict.figure >= worth_it;
+  verdict.assignment = EffectAssignment(verdict.effect, verdict.on ? "{}" : "null");
+  verdict.evidence = fmt::format("{}; tried: {:.2f} dB with it, {:.2f} dB without",
+                                 verdict.evidence, psnr_with, psnr_without);
+  return verdict;
+}
+
+std::string RowOf(const Verdict& v) {
+  const std::string sure = v.decided ? fmt::format("{:.0f} %", 100 * v.Sure()) : "-";
+  const char* const word = !v.decided ? "undecided" : v.on ? "on" : "off";
+  return fmt::format("{:<11} {:<9} {:>5}  {}\n", v.effect, word, sure, v.evidence);
+}
+
 std::string TableOf(const std::vector<Verdict>& verdicts) {
   std::string text =
       fmt::format("{:<11} {:<9} {:>5}  {}\n", "effect", "verdict", "sure", "evidence");
-  for (const Verdict& v : verdicts) {
-    const std::string sure = v.decided ? fmt::format("{:.0f} %", 100 * v.Sure()) : "-";
-    const char* const word = !v.decided ? "undecided" : v.on ? "on" : "off";
-    text += fmt::format("{:<11} {:<9} {:>5}  {}\n", v.effect, word, sure, v.evidence);
-  }
+  for (const Verdict& verdict : verdicts) text += RowOf(verdict);
   return text;
 }
 

@@ -18,6 +18,8 @@ struct Verdict {
 
   // From 0 at the threshold to 1 at twice or half of it. Facts are sure.
   double Sure() const;
+  // Whether the evidence is to be acted on as it is; what is in between can be tried.
+  bool IsSure() const { return Sure() >= 0.5; }
 
   // What the configuration says for it, as --set does: "effects.robust={}".
   std::string assignment = {};
@@ -33,10 +35,13 @@ Verdict Measured(const std::string& effect, double figure, double threshold,
                  const std::string& evidence);
 
 // Nothing tells.
-Verdict Undecided(const std::string& effect,
-                  const std::string& evidence = "no sparse points to tell from");
+Verdict Undecided(const std::string& effect, const std::string& evidence);
 
-// A table of verdicts, a line each.
+// What a trial has decided: on where it was worth so many decibels.
+Verdict Tried(Verdict verdict, double psnr_with, double psnr_without, double worth_it);
+
+// A verdict as a line, and a table of them.
+std::string RowOf(const Verdict& verdict);
 std::string TableOf(const std::vector<Verdict>& verdicts);
 
 }  // namespace nerf

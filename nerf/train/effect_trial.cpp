@@ -38,7 +38,7 @@ TrialResult TryConfig(Config config, const SceneFacts& scene, const Dataset& dat
                            seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2));
   TrialResult result;
   result.seconds_a_step = seconds[seconds.size() / 2];
-  result.psnr = trainer.ValidationPsnr();
+  result.psnr = trainer.ValidationPsnrAtOwnExposure();
   result.megabytes = MegabytesOf(trainer.GetModel());
   result.seconds = watch.Seconds();
   return result;

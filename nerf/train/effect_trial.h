@@ -10,7 +10,7 @@ namespace nerf {
 
 // What a short training came to.
 struct TrialResult {
-  double psnr = 0;            // dB, on validation photographs
+  double psnr = 0;            // dB, on validation photographs, each at its own exposure
   double seconds = 0;         // of the whole trial
   double seconds_a_step = 0;  // the median, so that a neighbour on the machine counts little
   double megabytes = 0;       // of parameters, with their gradients and Adam's moments

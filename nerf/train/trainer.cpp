@@ -1,14 +1,10 @@
 #include "nerf/train/trainer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <span>
 
 #include "nerf/data/pixel_sampler.h"
 #include "nerf/effects/background.h"
-#include "nerf/effects/exposure_fit.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/field/tensor_span.h"
@@ -25,6 +21,7 @@
 #include "nerf/train/run_folder.h"
 #include "nerf/train/tally.h"
 #include "nerf/train/training_display.h"
+#include "nerf/train/validation.h"
 #include "nerf/train/visible_cells.h"
 #include "sfm/input_error.h"
 
@@ -33,23 +30,6 @@ namespace {
 
 // What checkpoints call the state of the error map.
 constexpr char kErrorsName[] = "sampler.errors";
-
-// The exposures of photographs that are not trained on are fitted to them.
-void FitToPhotographs(std::span<float> rgb, const TargetBatch& truth, ColorEncoding encoding) {
-  std::map<std::int64_t, std::vector<std::size_t>> rays_of;
-  for (std::size_t r = 0; r < truth.photograph.size(); ++r) {
-    rays_of[truth.photograph[r]].push_back(r);
-  }
-  for (const auto& [photograph, rays] : rays_of) {
-    std::vector<float> rendered, shown;
-    for (const std::size_t r : rays) {
-      rendered.insert(rendered.end(), &rgb[3 * r], &rgb[3 * r] + 3);
-      shown.insert(shown.end(), &truth.rgb[3 * r], &truth.rgb[3 * r] + 3);
-    }
-    const std::array<float, 3> gains = FitGains(rendered, shown, encoding);
-    for (const std::size_t r : rays) ApplyGains(gains, rgb.subspan(3 * r, 3));
-  }
-}
 
 }  // namespace
 
@@ -61,17 +41,13 @@ struct Trainer::State {
         sampler(data.train, Options().error_driven_share,
                 model.config.effects.depth ? model.config.effects.depth->share : 0.0),
         optimizer(NamedParameters(model), model.config.optimizer),
+        validation(data.validation, Options().seed),
         pace(Options(), spent),
         rays_per_batch(std::clamp<std::int64_t>(Options().samples_per_batch / 128, 1,
                                                 Options().max_rays_per_batch)) {
-    TORCH_CHECK(Options().target_psnr == 0 || !data.validation.empty(),
+    TORCH_CHECK(Options().target_psnr == 0 || !validation.Empty(),
                 "Trainer: a target PSNR needs validation photographs");
     if (model.exposure || model.poses) CheckPhotographs();
-    if (!data.validation.empty()) {
-      constexpr std::int64_t kValidationRays = 8192;
-      validation = PixelSampler(data.validation).Sample(kValidationRays, Options().seed, 0);
-      std::ranges::fill(validation.rays.jitter, 0.5f);
-    }
   }
 
   const TrainOptions& Options() const { return model.config.train; }
@@ -81,7 +57,6 @@ struct Trainer::State {
   StepResult Step();
   StepResult Learn(StepSeconds& seconds);
   void AdaptBatch(std::int64_t shaded);
-  double Validate();
   bool ReachedTarget() const;
   // Not before the first step: a run without one has nothing to show.
   bool Over() const { return step > 0 && (ReachedTarget() || pace.Progress(step) >= 1); }
@@ -93,7 +68,7 @@ struct Trainer::State {
   std::filesystem::path run;
   PixelSampler sampler;
   Adam optimizer;
-  TargetBatch validation;
+  Validation validation;
   Pace pace;
   Tally tally;  // since the last line of metrics
 
@@ -178,18 +153,6 @@ void Trainer::State::AdaptBatch(std::int64_t shaded) {
   rays_per_batch = std::clamp<std::int64_t>(std::llround(wanted), 1, Options().max_rays_per_batch);
 }
 
-double Trainer::State::Validate() {
-  RenderOutput out = model.engine->Render(validation.rays);
-  if (model.exposure) FitToPhotographs(out.rgb, validation, model.scene.encoding);
-  double sum = 0;
-  for (std::size_t i = 0; i < out.rgb.size(); ++i) {
-    const double error =
-        std::clamp(out.rgb[i], 0.0f, 1.0f) - std::clamp(validation.rgb[i], 0.0f, 1.0f);
-    sum += error * error;
-  }
-  return PsnrOf(sum / static_cast<double>(out.rgb.size()));
-}
-
 bool Trainer::State::ReachedTarget() const {
   return Options().target_psnr > 0 && validation_psnr >= Options().target_psnr;
 }
@@ -202,7 +165,7 @@ nlohmann::json Trainer::State::Metrics() const {
   line["occupied"] = model.grid->OccupiedFraction();
   line["learning_rate"] = model.config.optimizer.learning_rate *
                           LearningRateFactor(model.config.schedule, step, pace.Progress(step));
-  if (!data.validation.empty()) line["validation_psnr"] = validation_psnr;
+  if (!validation.Empty()) line["validation_psnr"] = validation_psnr;
   return line;
 }
 
@@ -262,7 +225,9 @@ Trainer::~Trainer() = default;
 
 const Model& Trainer::GetModel() const { return state_->model; }
 
-double Trainer::ValidationPsnr() { return state_->Validate(); }
+double Trainer::ValidationPsnrAtOwnExposure() {
+  return state_->validation.Psnr(state_->model, true);
+}
 
 double Trainer::TrySteps(int steps) {
   State& s = *state_;
@@ -290,7 +255,8 @@ TrainSummary Trainer::Run(const std::atomic<bool>& stop) {
     LapTimer timer;
     const bool validates = over || s.step % options.validate_every == 0;
     if (validates) {
-      if (!s.data.validation.empty()) s.validation_psnr = s.Validate();
+      if (!s.validation.Empty())
+        s.validation_psnr = s.validation.Psnr(s.model, s.model.exposure != nullptr);
       metrics.Append(s.Metrics());
       s.tally = {};
       over = over || s.ReachedTarget();

@@ -41,8 +41,9 @@ class Trainer {
   // Throws NonFiniteError naming the step, ray and stage; the last good checkpoint stays.
   TrainSummary Run(const std::atomic<bool>& stop);
 
-  // dB, on a fixed sample of validation pixels, of which there must be some.
-  double ValidationPsnr();
+  // dB, on a fixed sample of validation pixels, of which there must be some, each photograph at its
+  // own exposure, fitted, whether the model simulates exposures or not.
+  double ValidationPsnrAtOwnExposure();
 
   const Model& GetModel() const;
 

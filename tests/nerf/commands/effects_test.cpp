@@ -78,6 +78,13 @@ TEST_F(EffectsCommands, InspectPrintsAVerdictForEachEffectWithItsEvidence) {
   EXPECT_EQ(root.at("exposure_stops").size(), 17u);
 }
 
+TEST_F(EffectsCommands, InspectOfPhotographsAloneTellsWhatTheyTell) {
+  const auto seen = RunNerf("inspect " + Path("masks/images"));
+  EXPECT_EQ(seen.exit_status, 0) << seen.output;
+  EXPECT_THAT(seen.output, AllOf(HasSubstr("17 of 17 photographs have one"),
+                                 HasSubstr("no poses yet"), HasSubstr("nerf poses")));
+}
+
 TEST_F(EffectsCommands, InspectDrawsAPictureWhereItIsToldTo) {
   const std::string inspect = "inspect " + Path("exposure/truth/sparse") + " --picture ";
   const auto drawn = RunNerf(inspect + Path("seen.png"));
@@ -112,6 +119,27 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   };
   EXPECT_NE(at("mean", ""), at("as", "--exposure-of view_002.png"));
   ExpectRefused("render " + Path("auto") + " --exposure-of nobody.png", HasSubstr("nobody.png"));
+}
+
+TEST_F(EffectsCommands, WhatTheEvidenceLeavesOpenIsTried) {
+  // Without sparse points nothing tells of the exposures.
+  const std::string poses = Path("exposure/truth/transforms.json");
+  const auto run = RunNerf("train " + poses + " -o " + Path("tried") +
+                           " --threads 2 --set train.steps=20 --set encoding.log2_table_size=12 "
+                           "--set field.hidden_width=16");
+  ASSERT_EQ(run.exit_status, 0) << run.output;
+  EXPECT_THAT(run.output,
+              AllOf(HasSubstr("tried: "), HasSubstr("dB with it"), HasSubstr("tried for")));
+  EXPECT_GT(Json("tried/effects.json").at("trial_seconds"), 0);
+  bool seen = false;
+  const nlohmann::json verdicts = Json("tried/effects.json").at("verdicts");
+  for (const auto& verdict : verdicts) {
+    if (verdict.at("effect") != "exposure") continue;
+    seen = true;
+    EXPECT_TRUE(verdict.at("decided"));
+    EXPECT_EQ(verdict.at("on"), !Json("tried/config.json").at("effects").at("exposure").is_null());
+  }
+  EXPECT_TRUE(seen);
 }
 
 TEST_F(EffectsCommands, RefinedPosesAreToldAndWritten) {

@@ -209,7 +209,7 @@ TEST(Poses, AreFoundByTraining) {
   // What is left is seven tenths of a pixel of these small photographs.
   EXPECT_LT(after[after.size() / 2], 0.75 * before[before.size() / 2]);
   // On photographs whose own poses are right.
-  EXPECT_GT(refining->ValidationPsnr(), fixed->ValidationPsnr() + 1);
+  EXPECT_GT(refining->ValidationPsnrAtOwnExposure(), fixed->ValidationPsnrAtOwnExposure() + 1);
 }
 
 }  // namespace

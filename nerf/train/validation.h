@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "nerf/data/dataset.h"
+#include "nerf/data/pixel_sampler.h"
+
+namespace nerf {
+
+struct Model;
+
+// A fixed sample of the pixels of photographs that are not trained on, to watch the progress.
+class Validation {
+ public:
+  //   views  may be empty: then there is nothing to measure
+  Validation(const std::vector<View>& views, std::uint64_t seed);
+
+  bool Empty() const { return batch_.rays.Size() == 0; }
+
+  // dB. With fit_exposure each photograph is rendered at its own exposure, which nobody else knows
+  // and which is fitted to it: so are models that simulate exposures measured, and those that are
+  // to be compared with them.
+  double Psnr(const Model& model, bool fit_exposure) const;
+
+ private:
+  TargetBatch batch_;
+};
+
+}  // namespace nerf
