@@ -74,6 +74,14 @@ torch::Tensor Poses::Twists() const {
 
 torch::Tensor Poses::LogFocals() const { return rate_ * log_focal_; }
 
+// A focal length f times as long: pixels stand at (x, y, f) where they stood at (x, y, 1).
+torch::Tensor Poses::Zoomed(const torch::Tensor& direction, const torch::Tensor& axis,
+                            const torch::Tensor& log_f) {
+  const torch::Tensor along = (axis * direction).sum(1, true);
+  const torch::Tensor length = (1 + torch::expm1(2 * log_f) * along.square()).sqrt();
+  return (direction + torch::expm1(log_f) * along * axis) / length;
+}
+
 Poses::Moved Poses::forward(const torch::Tensor& origin, const torch::Tensor& direction,
                             const torch::Tensor& photograph) {
   TORCH_CHECK(origin.sizes() == direction.sizes() && origin.size(0) == photograph.size(0),
@@ -82,13 +90,9 @@ Poses::Moved Poses::forward(const torch::Tensor& origin, const torch::Tensor& di
   const torch::Tensor twist = Twists().index_select(0, photograph);
   const torch::Tensor turn = twist.slice(1, 0, 3), shift = twist.slice(1, 3, 6);
 
-  // A focal length f times as long: pixels stand at (x, y, f) where they stood at (x, y, 1).
-  const torch::Tensor axis = axis_.index_select(0, photograph);
   const torch::Tensor log_f =
       LogFocals().index_select(0, lens_.index_select(0, photograph)).unsqueeze(1);
-  const torch::Tensor along = (axis * direction).sum(1, true);
-  const torch::Tensor length = (1 + torch::expm1(2 * log_f) * along.square()).sqrt();
-  const torch::Tensor zoomed = (direction + torch::expm1(log_f) * along * axis) / length;
+  const torch::Tensor zoomed = Zoomed(direction, axis_.index_select(0, photograph), log_f);
 
   // Rodrigues' formula; its series in the square of the angle is smooth at 0.
   const torch::Tensor a = turn.square().sum(1, true);

@@ -38,6 +38,11 @@ class Poses : public torch::nn::Module {
   Moved forward(const torch::Tensor& origin, const torch::Tensor& direction,
                 const torch::Tensor& photograph);
 
+  // Directions through lenses whose focal lengths are exp(log_f) times as long.
+  //   direction, axis  [R,3] unit vectors    log_f  [R,1]
+  static torch::Tensor Zoomed(const torch::Tensor& direction, const torch::Tensor& axis,
+                              const torch::Tensor& log_f);
+
   // The rays of a batch as they are now, in float.
   //   moved  what to go back through: torch::autograd::backward of these two
   static RayBatch WithMoved(const RayBatch& rays, const Moved& moved);

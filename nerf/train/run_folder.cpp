@@ -1,6 +1,7 @@
 #include "nerf/train/run_folder.h"
 
 #include "nerf/train/checkpoint.h"
+#include "nerf/train/refined_poses.h"
 #include "sfm/input_error.h"
 #include "sfm/transforms_json.h"
 
@@ -26,9 +27,9 @@ Checkpoint ReadRunCheckpoint(const fs::path& run) {
 
 OpenedRun OpenRun(const fs::path& run) {
   const Checkpoint checkpoint = ReadRunCheckpoint(run);
-  return {ModelFromCheckpoint(checkpoint),
-          sfm::ReadTransformsJson(PosesPath(run), sfm::AbsentImages::kKeep),
-          checkpoint.meta.value("step", std::int64_t{0}),
+  Model model = ModelFromCheckpoint(checkpoint);
+  const sfm::PosedImages posed = sfm::ReadTransformsJson(PosesPath(run), sfm::AbsentImages::kKeep);
+  return {model, RefinedPoses(model, posed), checkpoint.meta.value("step", std::int64_t{0}),
           checkpoint.meta.value("training_seconds", 0.0)};
 }
 

@@ -27,7 +27,7 @@ std::filesystem::path SparsePath(const std::filesystem::path& run);
 // A trained run, to be looked at.
 struct OpenedRun {
   Model model;
-  sfm::PosedImages posed;
+  sfm::PosedImages posed;  // as the training refined them, where it did
   std::int64_t step = 0;
   double training_seconds = 0;
 };

@@ -6,6 +6,8 @@
 #include <span>
 
 #include "nerf/effects/exposure_fit.h"
+#include "nerf/effects/poses.h"
+#include "nerf/field/tensor_span.h"
 #include "nerf/train/engine.h"
 #include "nerf/train/model.h"
 #include "nerf/train/tally.h"
@@ -37,10 +39,34 @@ Validation::Validation(const std::vector<View>& views, std::uint64_t seed) {
   if (views.empty()) return;
   batch_ = PixelSampler(views).Sample(kRays, seed, 0);
   std::ranges::fill(batch_.rays.jitter, 0.5f);
+  for (const std::int64_t photograph : batch_.photograph) {
+    const View& view = views[photograph];
+    const Eigen::Vector3f axis = view.normalized_from_camera.linear().col(2).cast<float>();
+    axis_.insert(axis_.end(), axis.begin(), axis.end());
+    lens_.push_back(view.lens);
+  }
+}
+
+// As refined focal lengths have them; the poses of these photographs are as they were given.
+RayBatch Validation::Rays(const Model& model) const {
+  if (!model.poses) return batch_.rays;
+  const torch::NoGradGuard no_grad;
+  const std::int64_t count = batch_.rays.Size();
+  const torch::Tensor of_lens = model.poses->LogFocals();
+  std::vector<float> log_f;
+  for (const std::int64_t lens : lens_) {
+    log_f.push_back(lens < of_lens.size(0) ? of_lens[lens].item<float>() : 0.0f);
+  }
+  const auto rows = [&](const std::vector<float>& values) {
+    return TensorOf(values, {count, 3}, torch::kFloat);
+  };
+  return Poses::WithMoved(batch_.rays, {rows(batch_.rays.origin),
+                                        Poses::Zoomed(rows(batch_.rays.direction), rows(axis_),
+                                                      TensorOf(log_f, {count, 1}, torch::kFloat))});
 }
 
 double Validation::Psnr(const Model& model, bool fit_exposure) const {
-  RenderOutput out = model.engine->Render(batch_.rays);
+  RenderOutput out = model.engine->Render(Rays(model));
   if (fit_exposure) FitToPhotographs(out.rgb, batch_, model.scene.encoding);
   double sum = 0;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include "nerf/data/dataset.h"
 #include "nerf/data/pixel_sampler.h"
+#include "nerf/sampling/rays.h"
 
 namespace nerf {
 
@@ -18,13 +19,17 @@ class Validation {
 
   bool Empty() const { return batch_.rays.Size() == 0; }
 
-  // dB. With fit_exposure each photograph is rendered at its own exposure, which nobody else knows
-  // and which is fitted to it: so are models that simulate exposures measured, and those that are
-  // to be compared with them.
+  // dB, through the lenses as the model has refined them. With fit_exposure each photograph is
+  // rendered at its own exposure, which nobody else knows and which is fitted to it: so are models
+  // that simulate exposures measured, and those that are to be compared with them.
   double Psnr(const Model& model, bool fit_exposure) const;
 
  private:
+  RayBatch Rays(const Model& model) const;
+
   TargetBatch batch_;
+  std::vector<float> axis_;         // [R,3] of the rays' cameras
+  std::vector<std::int64_t> lens_;  // [R]
 };
 
 }  // namespace nerf

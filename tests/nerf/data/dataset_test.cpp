@@ -87,6 +87,23 @@ class LoadedDataset : public testing::Test {
   std::optional<MaskOptions> masks_;
 };
 
+TEST_F(LoadedDataset, MasksThatLeaveEverythingChangeNothing) {
+  const Dataset plain = Load();
+  posed_.images[1].mask = folder_.path() / "mask.png";
+  Image white(4, 4, 3);
+  std::ranges::fill(white.pixels, 1.0f);
+  WriteImage(posed_.images[1].mask, white);
+  for (const char* meaning : {"ignore", "empty"}) {
+    masks_ = MaskOptions{meaning};
+    const Dataset masked = Load();
+    EXPECT_EQ(masked.has_alpha, plain.has_alpha);
+    for (std::size_t i = 0; i < plain.train.size(); ++i) {
+      EXPECT_EQ(masked.train[i].rgba, plain.train[i].rgba);
+      for (int k = 0; k < 16; ++k) EXPECT_EQ(masked.train[i].PixelOf(k), k);
+    }
+  }
+}
+
 TEST_F(LoadedDataset, PixelsToIgnoreAreNotHeld) {
   MaskTheSecond();
   EXPECT_EQ(Load().train[1].Held(), 16);  // the effect is off

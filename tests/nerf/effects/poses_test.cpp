@@ -12,11 +12,14 @@
 #include "nerf/config.h"
 #include "nerf/render/ray_gradient.h"
 #include "nerf/sample/sample_folder.h"
+#include "nerf/train/refined_poses.h"
 #include "nerf/train/trainer.h"
+#include "nerf/train/validation.h"
 #include "sfm/colmap_model.h"
 #include "sfm/transforms_json.h"
 #include "tests/support/central_differences.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/small_capture.h"
 #include "tests/support/two_engines.h"
 
 namespace nerf {
@@ -159,6 +162,37 @@ TEST(Poses, GradientsMatchCentralDifferences) {
   for (torch::Tensor parameter : e.poses->parameters()) {
     test::ExpectGradientMatchesCentralDifferences(f, parameter, 1e-7, 2e-5);
   }
+}
+
+// A photograph that is held out was taken through a lens whose focal length is known better now.
+TEST(Poses, OfALensCountForPhotographsThatAreHeldOutToo) {
+  const test::SmallCapture capture = test::MakeSmallCapture(9, 24, 18);
+  Config config = test::SmallConfig();
+  config.effects.poses.emplace();
+  const test::ScratchFolder run;
+  Trainer trainer(config, capture.scene, capture.data, run.path());
+  trainer.TrySteps(50);
+  const Model& model = trainer.GetModel();
+  const auto set_focal = [&](double factor) {
+    const torch::NoGradGuard no_grad;
+    model.poses->named_parameters()["log_focal"].fill_(std::log(factor) /
+                                                       config.effects.poses->rate);
+  };
+  constexpr double kFactor = 1.1;
+  const std::vector<View> held_out = {capture.data.train.front()};
+  std::vector<View> longer = held_out;
+  for (int i = 0; i < 2; ++i) longer[0].camera.params[i] *= kFactor;
+  set_focal(1);
+  const double as_given = Validation(held_out, 1).Psnr(model, false);
+  const double through_longer = Validation(longer, 1).Psnr(model, false);
+  set_focal(kFactor);
+  EXPECT_NEAR(Validation(held_out, 1).Psnr(model, false), through_longer, 1e-4);
+  EXPECT_GT(std::fabs(as_given - through_longer), 1e-3);
+
+  sfm::PosedImages posed;
+  posed.cameras = {held_out.front().camera};
+  const sfm::Camera camera = RefinedPoses(model, posed).cameras.front();
+  EXPECT_NEAR(camera.params[0], longer.front().camera.params[0], 1e-3);
 }
 
 // A sample whose poses are wrong, as they should be and as training refines them.

@@ -47,6 +47,19 @@ TEST(RobustLoss, GradientsMatchCentralDifferences) {
   }
 }
 
+TEST(RobustLoss, OfAnEndlessScaleChangesNoBit) {
+  test::TwoEngines off, endless;
+  endless.robust = RobustOptions{1e300};
+  off.Make(50);
+  endless.Make(50);
+  for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
+    const StepResult a = (off.*engine)->AccumulateGradients(off.batch);
+    const StepResult b = (endless.*engine)->AccumulateGradients(endless.batch);
+    EXPECT_EQ(a.loss, b.loss);
+    EXPECT_EQ(a.ray_error, b.ray_error);
+  }
+}
+
 TEST(RobustLoss, MeansTheSameInBothEngines) {
   for (const char* kind : {"huber", "mse"}) {
     test::TwoEngines e;

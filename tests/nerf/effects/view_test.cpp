@@ -27,6 +27,27 @@ TEST(ViewDependence, LeftAwayLeavesNoDependenceOnTheDirection) {
   EXPECT_TRUE(radiance(1, 0, 0).equal(radiance(0, 0.6f, -0.8f)));
 }
 
+// The neutral parameter: weights of 0 for the direction, all others the same.
+TEST(ViewDependence, WithoutWeightGivesTheDiffuseImage) {
+  test::TwoEngines by_direction, diffuse;
+  diffuse.color_model = ColorModel::kDiffuse;
+  by_direction.Make(50);
+  diffuse.Make(50);
+  const torch::NoGradGuard no_grad;
+  const auto from = diffuse.field->named_parameters();
+  for (auto& p : by_direction.field->named_parameters()) {
+    const torch::Tensor& plain = from[p.key()];
+    if (p.value().sizes() != plain.sizes()) p.value().zero_();
+    p.value().slice(1, 0, plain.size(1)).copy_(plain);
+  }
+  for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
+    const std::vector<float> a = (by_direction.*engine)->Render(by_direction.batch.rays).rgb;
+    const std::vector<float> b = (diffuse.*engine)->Render(diffuse.batch.rays).rgb;
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-6);  // sums of zeros
+  }
+}
+
 TEST(ViewDependence, LeftAwayCostsNoWeight) {
   const auto weights = [](const char* effect) {
     const Model model = MakeModel(LoadConfig("base", {effect}), SceneFacts());
