@@ -18,7 +18,9 @@ const std::set<std::string> kTried = {"exposure", "view", "robust", "poses", "fo
 constexpr int kSteps = 200;
 constexpr std::int64_t kSamples = 16384;  // a step
 constexpr double kWorthIt = 0.2;          // dB, more than the noise of a trial
-constexpr double kShortestBudget = 120;   // seconds; of a shorter one trials would take too much
+constexpr double kShortestBudget = 120;   // seconds; of a shorter one trials would take too much,
+constexpr double kShortestRun = 10.0 * kSteps * kSamples;  // as of a run of fewer samples
+constexpr std::size_t kFewestHeldOut = 2;  // on one photograph a difference is chance
 
 // Where nothing tells at all, exposure alone is tried: photographs often differ in it, and it may
 // be worth ten decibels.
@@ -27,19 +29,24 @@ bool IsOpen(const Verdict& verdict, const std::set<std::string>& named) {
   return verdict.decided ? kTried.contains(verdict.effect) : verdict.effect == "exposure";
 }
 
+bool IsWorthATrial(const TrainOptions& options) {
+  if (options.time_budget > 0) return options.time_budget >= kShortestBudget;
+  return static_cast<double>(options.steps) * static_cast<double>(options.samples_per_batch) >=
+         kShortestRun;
+}
+
 }  // namespace
 
 EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
                            const std::set<std::string>& named, Dataset& data,
                            std::vector<Verdict>& verdicts) {
   EffectTrials trials;
-  const double budget = config.train.time_budget;
   const bool any =
       std::ranges::any_of(verdicts, [&](const Verdict& v) { return IsOpen(v, named); });
-  if (!any || (budget > 0 && budget < kShortestBudget)) return trials;
+  if (!any || !IsWorthATrial(config.train)) return trials;
   const Stopwatch watch;
   const HeldOut held_out(data, scene);
-  if (data.validation.empty()) return trials;
+  if (data.validation.size() < kFewestHeldOut) return trials;
   Config trial = config;
   trial.train.samples_per_batch = kSamples;
   const auto psnr_of = [&](const Config& tried) {

@@ -20,7 +20,7 @@ struct EffectTrials {
 // Decides what the evidence left open by paired trials, with the effect and without it: short
 // trainings, measured on some of the photographs to learn from, which are held out meanwhile.
 // Writes into the verdicts what came out, and prints it. Where there are too few photographs, or
-// the time budget is short, nothing is tried, and what is open stays as configured.
+// the training is short, nothing is tried, and what is open stays as configured.
 //   verdicts  those that are not sure and that nobody has named are open
 //   data      is as it was afterwards
 EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,

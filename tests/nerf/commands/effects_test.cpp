@@ -125,7 +125,8 @@ TEST_F(EffectsCommands, WhatTheEvidenceLeavesOpenIsTried) {
   // Without sparse points nothing tells of the exposures.
   const std::string poses = Path("exposure/truth/transforms.json");
   const auto run = RunNerf("train " + poses + " -o " + Path("tried") +
-                           " --threads 2 --set train.steps=20 --set encoding.log2_table_size=12 "
+                           " --threads 2 --set data.test_every=0 --set train.validate_every=20 "
+                           "--target-psnr 1 --set encoding.log2_table_size=12 "
                            "--set field.hidden_width=16");
   ASSERT_EQ(run.exit_status, 0) << run.output;
   EXPECT_THAT(run.output,

@@ -49,7 +49,7 @@ TEST(TrackColors, APointThatTheNeighbourSeesIsMissed) {
   sample::WriteSample(folder.path(), options);
   sfm::PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
-  EXPECT_EQ(UnseenBy(posed, kPhotograph), 0u);
+  EXPECT_LT(UnseenBy(posed, kPhotograph), 3u);
 
   // Somebody stands before this camera alone.
   Blind(posed, [](int, int image) { return image == kPhotograph; });
