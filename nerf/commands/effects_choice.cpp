@@ -11,6 +11,7 @@
 
 #include "nerf/commands/effects_trials.h"
 #include "nerf/stopwatch.h"
+#include "nerf/train/effect_trial.h"
 #include "sfm/atomic_file.h"
 #include "sfm/progress.h"
 
@@ -24,11 +25,14 @@ bool IsChosen(const Verdict& verdict) {
 
 }  // namespace
 
-EffectsChoice::EffectsChoice(const sfm::PosedImages& posed, std::set<std::string> named)
+EffectsChoice::EffectsChoice(const sfm::PosedImages& posed, const Config& asked,
+                             std::set<std::string> named)
     : named_(std::move(named)) {
   const Stopwatch watch;
   sfm::ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
-  inspection_ = Inspect(posed, [&](int read) { progress.Update(read); });
+  const bool learned = !named_.contains("background") || asked.effects.background;
+  inspection_ = Inspect(
+      posed, [&](int read) { progress.Update(read); }, learned);
   progress.Finish();
   if (!inspection_.warning.empty()) spdlog::warn("{}", inspection_.warning);
   for (const Verdict& verdict : inspection_.verdicts) {
@@ -53,10 +57,22 @@ std::vector<double> EffectsChoice::StopsOfTrained(const sfm::PosedImages& posed,
   return stops.size() == data.train.size() ? stops : std::vector<double>();
 }
 
-void EffectsChoice::Try(const Config& config, const SceneFacts& scene, Dataset& data) {
-  const EffectTrials trials = TryWhatIsOpen(config, scene, named_, data, inspection_.verdicts);
+void EffectsChoice::Try(const Config& config, const SceneFacts& scene, double seconds_left,
+                        Dataset& data) {
+  const EffectTrials trials =
+      TryWhatIsOpen(config, scene, named_, seconds_left, data, inspection_.verdicts);
   assignments_.insert(assignments_.end(), trials.assignments.begin(), trials.assignments.end());
   trial_seconds_ = trials.seconds;
+  std::vector<std::string> open;
+  for (const Verdict& v : inspection_.verdicts) {
+    if (IsChosen(v) && v.decided && !v.IsSure() && !named_.contains(v.effect)) {
+      open.push_back(v.effect);
+    }
+  }
+  if (!open.empty()) {
+    fmt::print("not sure, and so as configured: {}\n", fmt::join(open, ", "));
+    std::fflush(stdout);
+  }
 }
 
 void EffectsChoice::Print() const {
@@ -79,8 +95,11 @@ void EffectsChoice::Print() const {
   std::fflush(stdout);
 }
 
-void EffectsChoice::Write(const std::filesystem::path& run) const {
-  nlohmann::json verdicts = nlohmann::json::array();
+void EffectsChoice::Write(const Config& config, const std::filesystem::path& run) const {
+  nlohmann::json verdicts = nlohmann::json::array(), simulated = nlohmann::json::array();
+  for (const std::string& effect : EffectNames()) {
+    if (Simulates(config, effect)) simulated.push_back(effect);
+  }
   for (const Verdict& v : inspection_.verdicts) {
     verdicts.push_back({{"effect", v.effect},
                         {"evidence", v.evidence},
@@ -89,11 +108,9 @@ void EffectsChoice::Write(const std::filesystem::path& run) const {
                         {"sure", v.Sure()},
                         {"asked_for", named_.contains(v.effect)}});
   }
-  const nlohmann::json root = {{"verdicts", verdicts},
-                               {"asked_for", named_},
-                               {"assignments", assignments_},
-                               {"seconds", seconds_},
-                               {"trial_seconds", trial_seconds_}};
+  const nlohmann::json root = {{"verdicts", verdicts}, {"simulated", simulated},
+                               {"asked_for", named_},  {"assignments", assignments_},
+                               {"seconds", seconds_},  {"trial_seconds", trial_seconds_}};
   sfm::WriteFileAtomically(run / "effects.json", root.dump(2) + "\n");
 }
 

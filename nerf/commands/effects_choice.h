@@ -19,15 +19,16 @@ class EffectsChoice {
   // As configured.
   EffectsChoice() = default;
   // Looks at the capture, and acts on what is sure.
-  //   named  effects that a person decides
-  EffectsChoice(const sfm::PosedImages& posed, std::set<std::string> named);
+  //   named  effects that a person decides, as in `asked`
+  EffectsChoice(const sfm::PosedImages& posed, const Config& asked, std::set<std::string> named);
 
   // The exposures that are known, of the photographs that are trained on; empty where they are not.
   //   posed  that was looked at
   std::vector<double> StopsOfTrained(const sfm::PosedImages& posed, const Dataset& data) const;
 
   // Tries what the look left open (nerf/commands/effects_trials.h), and prints it.
-  void Try(const Config& config, const SceneFacts& scene, Dataset& data);
+  //   seconds_left  of the time budget, where there is one
+  void Try(const Config& config, const SceneFacts& scene, double seconds_left, Dataset& data);
 
   // What was decided so far, to be configured.
   const std::vector<std::string>& Assignments() const { return assignments_; }
@@ -37,7 +38,7 @@ class EffectsChoice {
   void Print() const;
 
   // RUN/effects.json: the verdicts with their evidence, who decided, and what is simulated.
-  void Write(const std::filesystem::path& run) const;
+  void Write(const Config& config, const std::filesystem::path& run) const;
 
  private:
   std::set<std::string> named_;

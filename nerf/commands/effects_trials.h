@@ -19,12 +19,14 @@ struct EffectTrials {
 
 // Decides what the evidence left open by paired trials, with the effect and without it: short
 // trainings, measured on some of the photographs to learn from, which are held out meanwhile.
-// Writes into the verdicts what came out, and prints it. Where there are too few photographs, or
-// the training is short, nothing is tried, and what is open stays as configured.
-//   verdicts  those that are not sure and that nobody has named are open
-//   data      is as it was afterwards
+// Writes into the verdicts what came out, and prints it. All trials together take no more than a
+// seventh of the training; where that is too short, or photographs are too few, what is open stays
+// as configured.
+//   verdicts      those that are not sure and that nobody has named are open
+//   seconds_left  of the time budget, where there is one
+//   data          is as it was afterwards
 EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
-                           const std::set<std::string>& named, Dataset& data,
+                           const std::set<std::string>& named, double seconds_left, Dataset& data,
                            std::vector<Verdict>& verdicts);
 
 }  // namespace nerf

@@ -81,7 +81,8 @@ void MeasureEffects(const OpenedRun& run, int steps, bool json,
     return TryConfig(tried, FactsOf(photographs, run.model.scene.normalized_from_world),
                      photographs, steps);
   };
-  // Without masks what they hide is learned from; measured are the same pixels.
+  // Without masks what they hide is learned from; measured are the same pixels. Of masks that mean
+  // empty there is nothing to measure: what they hide is not of the scene.
   const auto try_without = [&](const std::string& effect) {
     const Config without = WithEffect(config, effect, "null");
     if (effect != "masks") return try_with(without, data);
@@ -92,7 +93,9 @@ void MeasureEffects(const OpenedRun& run, int steps, bool json,
   };
   std::vector<std::string> effects;
   for (const std::string& effect : EffectNames()) {
-    if (Simulates(config, effect)) effects.push_back(effect);
+    const bool empty =
+        effect == "masks" && config.effects.masks && config.effects.masks->meaning == "empty";
+    if (Simulates(config, effect) && !empty) effects.push_back(effect);
   }
   sfm::ProgressLine progress("measuring", 2 * static_cast<std::int64_t>(effects.size()));
   std::vector<Worth> all;

@@ -55,9 +55,11 @@ sfm::Split SplitFromName(const std::string& name) {
 
 // Nobody knows the exposure of a photograph that training never saw: it is fitted, one gain a
 // channel.
-void FitExposure(const Image& truth, Image& rendered) {
-  const Image shown = rendered.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
-  ApplyGains(FitGains(rendered.pixels, shown.pixels, rendered.encoding), rendered.pixels);
+void FitExposure(const Image& truth, const Eigen::Vector3f& background, RenderedView& view) {
+  const Image shown = view.rgb.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
+  const std::vector<float> through = SeenThrough(view.opacity.pixels, {background.data(), 3});
+  std::vector<float>& rgb = view.rgb.pixels;
+  ApplyGains(FitGains(rgb, shown.pixels, through, view.rgb.encoding), through, rgb);
 }
 
 // Where a mask says to ignore what a photograph shows, the rendering counts as right.
@@ -123,7 +125,7 @@ void RunEval(const EvalArguments& arguments) {
                    DisplayBackground(scene.has_alpha), scene.encoding);
     const double seconds = watch.Seconds();
     cost.Add(view);
-    if (fit_exposure) FitExposure(truth, view.rgb);
+    if (fit_exposure) FitExposure(truth, DisplayBackground(scene.has_alpha), view);
     const double of_ignored = Ignore(whole, truth, view.rgb);
     const double psnr = Psnr(truth, view.rgb) - of_ignored;
     scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds});

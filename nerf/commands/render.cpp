@@ -14,6 +14,7 @@
 #include "nerf/commands/threads.h"
 #include "nerf/data/dataset.h"
 #include "nerf/data/image_io.h"
+#include "nerf/effects/exposure_fit.h"
 #include "nerf/output/color_map.h"
 #include "nerf/output/video.h"
 #include "nerf/render/image_renderer.h"
@@ -67,13 +68,7 @@ void WriteShot(const RenderedView& view, const SceneFacts& scene, const RenderAr
 // The view as a photograph of that exposure shows it; what is seen through it is not exposed.
 void Expose(const std::array<float, 3>& gains, const Eigen::Vector3f& background,
             RenderedView& view) {
-  for (std::size_t i = 0; i < view.opacity.pixels.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      const float through = (1 - view.opacity.pixels[i]) * background[c];
-      float& value = view.rgb.pixels[3 * i + c];
-      value = gains[c] * (value - through) + through;
-    }
-  }
+  ApplyGains(gains, SeenThrough(view.opacity.pixels, {background.data(), 3}), view.rgb.pixels);
 }
 
 // Where the dial stands: as asked for, or where a frame takes no longer than asked for. Says what

@@ -120,8 +120,8 @@ double SpentOf(const Config& config, const Stopwatch& watch) {
 }  // namespace
 
 void StartRun(const TrainArguments& arguments, int threads, const Stopwatch& watch) {
-  if (arguments.input.empty()) throw sfm::InputError("nerf train: name an INPUT");
   const fs::path run = RunFolder(arguments);
+  if (arguments.input.empty()) throw sfm::InputError("nerf train: name an INPUT");
   std::vector<std::string> assignments = AssignmentsOf(arguments);
   const EffectsRequest effects = ParseEffects(arguments.effects);
   assignments.insert(assignments.end(), effects.assignments.begin(), effects.assignments.end());
@@ -141,7 +141,7 @@ void StartRun(const TrainArguments& arguments, int threads, const Stopwatch& wat
   RequireValidation(found, config);
   sfm::SceneNormalization normalized_from_world = sfm::NormalizeScene(found);
   if (effects.inspect) {
-    choice = EffectsChoice(found, NamedEffects(arguments.preset, assignments));
+    choice = EffectsChoice(found, config, NamedEffects(arguments.preset, assignments));
     normalized_from_world = choice.GetInspection().normalized_from_world;
     config = configured(arguments.preset);
   }
@@ -159,10 +159,10 @@ void StartRun(const TrainArguments& arguments, int threads, const Stopwatch& wat
   SceneFacts scene = FactsOf(data, normalized_from_world);
   if (effects.inspect) {
     scene.exposure_stops = choice.StopsOfTrained(found, data);
-    choice.Try(config, scene, data);
+    choice.Try(config, scene, config.train.time_budget - watch.Seconds(), data);
     config = configured(arguments.preset);
     WriteConfig(config, run);
-    choice.Write(run);
+    choice.Write(config, run);
   }
   const double spent = SpentOf(config, watch);
   auto trainer = std::make_unique<Trainer>(config, scene, data, run, spent);
@@ -185,10 +185,10 @@ void StartRun(const TrainArguments& arguments, int threads, const Stopwatch& wat
 
 void ResumeRun(const TrainArguments& arguments, int threads, const Stopwatch& watch) {
   const fs::path run = RunFolder(arguments);
-  if (!AssignmentsOf(arguments).empty() || arguments.preset_given) {
+  if (!AssignmentsOf(arguments).empty() || arguments.preset_given || arguments.effects != "auto") {
     throw sfm::InputError(
-        "--resume goes on with the run's own configuration; leave --config, --set, --downscale, "
-        "--time-budget and --target-psnr away");
+        "--resume goes on with the run's own configuration; leave --config, --set, --effects, "
+        "--downscale, --time-budget and --target-psnr away");
   }
   const Checkpoint checkpoint = ReadRunCheckpoint(run);
   const Model model = ModelFromCheckpoint(checkpoint);

@@ -235,6 +235,10 @@ Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& 
           "images",
           image.path.string());
     }
+    if (static_cast<std::int64_t>(photograph.whole.size()) ==
+        PixelsOf(Downscaled(camera, options.downscale))) {
+      photograph.whole.clear();  // all
+    }
     pixels = ToLinear(pixels);
   }
   pixels = Downscale(pixels, options.downscale);

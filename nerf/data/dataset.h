@@ -90,8 +90,9 @@ struct PhotographOptions {
 // Reads the training and validation photographs on all threads, or on as many as can decode at once
 // within that much memory again, at least one. A photograph that cannot be read is
 // named in `skipped` and left out. Where some are linear (EXR, HDR), all are made so. Throws
-// sfm::InputError when none is left to train on, or when an image is not of its camera's size.
-// Pixels that a mask says to ignore are not held, and never drawn.
+// sfm::InputError when none is left to train on.
+// Pixels that a mask says to ignore are not held, and never drawn, nor are those of made-linear
+// photographs that are white.
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
                     const std::optional<MaskOptions>& masks,
                     const sfm::SceneNormalization& normalized_from_world);

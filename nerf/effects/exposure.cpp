@@ -32,6 +32,11 @@ torch::Tensor Exposure::forward(const torch::Tensor& rgb, const torch::Tensor& p
   return torch::where(torch::logical_and(target >= 1, shown > 1), target, shown);
 }
 
+torch::Tensor Exposure::Unexposed(const torch::Tensor& background,
+                                  const torch::Tensor& photograph) {
+  return background / Gains().to(background.scalar_type()).index_select(0, photograph);
+}
+
 void Exposure::Start(std::span<const double> stops) {
   TORCH_CHECK(static_cast<std::int64_t>(stops.size()) == log_gain_.size(0),
               "Exposure: ", stops.size(), " exposures for ", log_gain_.size(0), " photographs");

@@ -18,6 +18,9 @@ namespace nerf {
 // power law, for which that is the same as a gain g^2.2 of light. Source: the per-image affine
 // colour of Rematas et al. 2022, "Urban Radiance Fields", without its mixing of channels.
 //
+// What a ray is given as its background, where photographs are cut out by alpha, was laid under the
+// photograph as it is and has no exposure: Unexposed. A background that is learned has it.
+//
 // Brightness could wander from the gains into the field and back; so the mean of the log gains is
 // taken from each. What is rendered is the field itself: the scene at the photographs' mean
 // exposure.
@@ -35,6 +38,11 @@ class Exposure : public torch::nn::Module {
   // Differentiable in rgb and in the gains.
   torch::Tensor forward(const torch::Tensor& rgb, const torch::Tensor& photograph,
                         const torch::Tensor& target);
+
+  // A background that the gains will multiply back to what it is.
+  //   background  [R,3]    photograph  [R] int64    returns  [R,3]
+  // Differentiable as forward is.
+  torch::Tensor Unexposed(const torch::Tensor& background, const torch::Tensor& photograph);
 
   // Sets the gains before training, as EXIF tells of them.
   //   stops  [photographs] exposure, log2 of light; their mean is taken from each

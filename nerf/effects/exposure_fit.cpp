@@ -5,12 +5,14 @@
 namespace nerf {
 
 std::array<float, 3> FitGains(std::span<const float> rendered, std::span<const float> photograph,
-                              ColorEncoding encoding) {
+                              std::span<const float> through, ColorEncoding encoding) {
   std::array<double, 3> both{}, own{};
   for (std::size_t i = 0; i < photograph.size(); ++i) {
     if (encoding == ColorEncoding::kSrgb && (photograph[i] <= 0 || photograph[i] >= 1)) continue;
-    both[i % 3] += static_cast<double>(rendered[i]) * static_cast<double>(photograph[i]);
-    own[i % 3] += static_cast<double>(rendered[i]) * static_cast<double>(rendered[i]);
+    const double behind = through.empty() ? 0.0 : static_cast<double>(through[i]);
+    const double of_scene = static_cast<double>(rendered[i]) - behind;
+    both[i % 3] += of_scene * (static_cast<double>(photograph[i]) - behind);
+    own[i % 3] += of_scene * of_scene;
   }
   std::array<float, 3> gains = {1, 1, 1};
   for (int c = 0; c < 3; ++c) {
@@ -19,8 +21,20 @@ std::array<float, 3> FitGains(std::span<const float> rendered, std::span<const f
   return gains;
 }
 
-void ApplyGains(const std::array<float, 3>& gains, std::span<float> rgb) {
-  for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] *= gains[i % 3];
+void ApplyGains(const std::array<float, 3>& gains, std::span<const float> through,
+                std::span<float> rgb) {
+  for (std::size_t i = 0; i < rgb.size(); ++i) {
+    const float behind = through.empty() ? 0.0f : through[i];
+    rgb[i] = gains[i % 3] * (rgb[i] - behind) + behind;
+  }
+}
+
+std::vector<float> SeenThrough(std::span<const float> opacity, std::span<const float> background) {
+  std::vector<float> through(3 * opacity.size());
+  for (std::size_t i = 0; i < through.size(); ++i) {
+    through[i] = (1 - opacity[i / 3]) * background[background.size() == 3 ? i % 3 : i];
+  }
+  return through;
 }
 
 }  // namespace nerf

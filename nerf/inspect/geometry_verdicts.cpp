@@ -66,8 +66,8 @@ bool IsBeforeBackground(const PointShares& shares) {
   return shares.far >= kFarAway && shares.between < kBetween && shares.far + shares.between < 1;
 }
 
-Verdict JudgeUnbounded(const PointShares& shares) {
-  const bool bounded = IsBeforeBackground(shares);
+Verdict JudgeUnbounded(const PointShares& shares, bool learned) {
+  const bool bounded = learned && IsBeforeBackground(shares);
   return Fact("unbounded", !bounded, shares.between,
               fmt::format("{:.1f} % of the points are from {:.1f} to {:.0f} radii away{}",
                           100 * shares.between, kBall, kFar,
@@ -75,17 +75,16 @@ Verdict JudgeUnbounded(const PointShares& shares) {
 }
 
 Verdict JudgeBackground(const PointShares& shares) {
-  Verdict verdict = Measured(
+  const Verdict verdict = Measured(
       "background", shares.far, kFarAway,
       fmt::format("{:.1f} % of the points are more than {:.0f} radii away; {:.1f} % call for it{}",
                   100 * shares.far, kFar, 100 * kFarAway,
                   shares.far >= kFarAway && !IsBeforeBackground(shares)
                       ? ", but contracted space holds them with those before them"
                       : ""));
-  if (!IsBeforeBackground(shares) && verdict.on) {
-    verdict = Fact("background", false, shares.far, verdict.evidence);
-  }
-  return verdict;
+  // Both are decided together, so one is as sure as the other.
+  if (!verdict.on) return verdict;
+  return Fact("background", IsBeforeBackground(shares), shares.far, verdict.evidence);
 }
 
 Verdict JudgeDepth(const sfm::PosedImages& posed,

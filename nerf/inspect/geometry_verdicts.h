@@ -29,7 +29,8 @@ PointShares SharesOfPoints(const sfm::PosedImages& posed,
 // background and rays may end at the ball about what is near. Where they are everywhere, contracted
 // space holds the far ones too.
 bool IsBeforeBackground(const PointShares& shares);
-Verdict JudgeUnbounded(const PointShares& shares);
+//   learned  whether a background may be learned; else contracted space must hold what is far
+Verdict JudgeUnbounded(const PointShares& shares, bool learned);
 Verdict JudgeBackground(const PointShares& shares);
 
 // Whether photographs alone leave open where matter stands, of what is not far.

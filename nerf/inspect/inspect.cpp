@@ -76,7 +76,8 @@ Inspection InspectPhotographs(const sfm::PosedImages& photographs) {
   return inspection;
 }
 
-Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read) {
+Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read,
+                   bool learned) {
   CheckMasks(posed);
   Inspection inspection;
   const PhotographFacts facts = LookAtPhotographs(posed);
@@ -94,8 +95,9 @@ Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>
         Fact("unbounded", true, 0, "photographs without alpha show surroundings"));
   } else {
     shares = SharesOfPoints(posed, frame);
-    inspection.verdicts.push_back(JudgeUnbounded(shares));
-    if (IsBeforeBackground(shares)) inspection.normalized_from_world = FittedTo(shares.near, frame);
+    inspection.verdicts.push_back(JudgeUnbounded(shares, learned));
+    const bool bounded = !inspection.verdicts.back().on;
+    if (bounded) inspection.normalized_from_world = FittedTo(shares.near, frame);
   }
   if (posed.points.size() < kFewestPoints || posed.images.size() < kFewestPhotographs) {
     AddUndecided(posed, alpha, "no sparse points to tell from", inspection);

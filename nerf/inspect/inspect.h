@@ -26,9 +26,11 @@ struct Inspection {
 // Looks at the photographs, and at the sparse points where structure from motion has left some:
 // the colours of each point over the photographs that see it. Without points, EXIF may tell of the
 // exposures.
-//   read  called with the number of photographs read
+//   read     called with the number of photographs read
+//   learned  whether a background may be learned; else contracted space must hold what is far
 // Throws sfm::InputError naming a mask that is broken.
-Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read = {});
+Inspection Inspect(const sfm::PosedImages& posed, const std::function<void(int)>& read = {},
+                   bool learned = true);
 
 // What photographs alone tell, before their poses are known: alpha, linear radiance, masks, EXIF.
 //   photographs  without poses and cameras

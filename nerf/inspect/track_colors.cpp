@@ -104,17 +104,17 @@ bool IsSeenBy(const sfm::SparsePoint& point, int photograph) {
 }
 
 // Whether the photograph that looks at a point from most nearly where this one does sees it. What
-// stands before a point and is of the scene stands there for the neighbour too.
+// stands before a point and is of the scene stands there for the neighbour too (as does who stays
+// for two photographs: that is not told apart).
 bool NeighbourSees(const sfm::PosedImages& posed, int point, int photograph) {
   int neighbour = -1;
   double smallest = std::numeric_limits<double>::infinity();
   for (int other = 0; other < static_cast<int>(posed.images.size()); ++other) {
-    if (other == photograph || !PlaceIn(posed, other, posed.points[point].x_in_world)) continue;
+    if (other == photograph) continue;
     const double angle = AngleAt(posed, point, photograph, other);
-    if (angle < smallest) {
-      smallest = angle;
-      neighbour = other;
-    }
+    if (angle >= smallest || !PlaceIn(posed, other, posed.points[point].x_in_world)) continue;
+    smallest = angle;
+    neighbour = other;
   }
   return neighbour >= 0 && IsSeenBy(posed.points[point], neighbour);
 }

@@ -11,7 +11,7 @@ namespace nerf {
 
 double Verdict::Sure() const {
   if (!decided) return 0;
-  if (threshold == 0 || figure <= 0) return 1;
+  if (threshold <= 0 || figure <= 0) return 1;
   return std::min(1.0, std::fabs(std::log2(figure / threshold)));
 }
 
@@ -44,7 +44,7 @@ Verdict Undecided(const std::string& effect, const std::string& evidence) {
 Verdict Tried(Verdict verdict, double psnr_with, double psnr_without, double worth_it) {
   verdict.figure = psnr_with - psnr_without;
   verdict.threshold = worth_it;
-  verdict.decided = true;
+  verdict.decided = verdict.tried = true;
   verdict.on = verdict.figure >= worth_it;
   verdict.assignment = EffectAssignment(verdict.effect, verdict.on ? "{}" : "null");
   verdict.evidence = fmt::format("{}; tried: {:.2f} dB with it, {:.2f} dB without",

@@ -15,11 +15,12 @@ struct Verdict {
   double threshold = 0;  // from which on the scene calls for it
   bool decided = false;  // whether there is any evidence
   bool on = false;
+  bool tried = false;  // by a trial, after which there is no more to ask
 
   // From 0 at the threshold to 1 at twice or half of it. Facts are sure.
   double Sure() const;
   // Whether the evidence is to be acted on as it is; what is in between can be tried.
-  bool IsSure() const { return Sure() >= 0.5; }
+  bool IsSure() const { return tried || Sure() >= 0.5; }
 
   // What the configuration says for it, as --set does: "effects.robust={}".
   std::string assignment = {};
@@ -37,7 +38,7 @@ Verdict Measured(const std::string& effect, double figure, double threshold,
 // Nothing tells.
 Verdict Undecided(const std::string& effect, const std::string& evidence);
 
-// What a trial has decided: on where it was worth so many decibels.
+// What a trial has decided: on where it was worth so many decibels. Sure: there is no more to ask.
 Verdict Tried(Verdict verdict, double psnr_with, double psnr_without, double worth_it);
 
 // A verdict as a line, and a table of them.

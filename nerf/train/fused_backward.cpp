@@ -37,7 +37,7 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
                            std::span<float> ray_error) const {
   FusedTile& tile = worker.tile;
   const std::int64_t count = tile.Rays(), size = tile.samples.Size();
-  if (!worker.pixels.Add(pixel_model_, batch, first, tile.rgb, ray_error)) {
+  if (!worker.pixels.Add(pixel_model_, batch, first, tile.rgb, tile.opacity, ray_error)) {
     throw NonFiniteError(
         "the loss is not finite: " +
         DescribeNonFinite(tile, std::span(batch.rgb).subspan(3 * first, 3 * count), first));

@@ -27,7 +27,10 @@ constexpr std::int64_t kTilePositions = 512;
 FusedEngine::FusedEngine(EngineParts parts) : parts_(std::move(parts)), forward_(parts_) {
   pixel_model_.loss = parts_.loss;
   pixel_model_.robust = parts_.robust;
-  if (parts_.exposure) pixel_model_.saturates = parts_.exposure->Saturates();
+  if (parts_.exposure) {
+    pixel_model_.saturates = parts_.exposure->Saturates();
+    pixel_model_.unexposed = !parts_.background;
+  }
 }
 
 FusedEngine::~FusedEngine() = default;
@@ -92,8 +95,9 @@ RenderOutput FusedEngine::RenderRays(const RayBatch& rays) const {
 StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
   CheckRays(batch.rays);
   Refresh();
-  if (!parts_.background && !parts_.poses) return LearnFrom(batch);
-  TargetBatch seen = batch;
+  if (!parts_.background && !parts_.poses && !parts_.exposure) return LearnFrom(batch);
+  TargetBatch seen =
+      pixel_model_.unexposed ? WithUnexposedBackgrounds(batch, pixel_model_.gain) : batch;
   const std::int64_t count = batch.rays.Size();
   Poses::Moved moved;
   if (parts_.poses) {

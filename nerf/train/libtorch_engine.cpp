@@ -124,11 +124,20 @@ PackedSamples LibTorchEngine::VisibleSamples(const RayBatch& rays, const PackedS
   return KeepFront(samples, kept);
 }
 
+// What rays see where they meet nothing, [R,3].
+torch::Tensor LibTorchEngine::Behind(const RayBatch& rays) const {
+  const torch::Dtype dtype = parts_.field->Dtype();
+  return parts_.background
+             ? parts_.background->forward(TensorOf(rays.direction, {rays.Size(), 3}, dtype))
+             : TensorOf(rays.background, {rays.Size(), 3}, dtype);
+}
+
 // A ray's way from its origin to its pixel.
-//   moved  the rays as refined poses have them, for gradients; null: constants
+//   behind  [R,3] what it sees where it meets nothing
+//   moved   the rays as refined poses have them, for gradients; null: constants
 LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays,
+                                                   const torch::Tensor& behind,
                                                    const Poses::Moved* moved) {
-  CheckRays(rays);
   const torch::Dtype dtype = parts_.field->Dtype();
   Evaluated out;
   PackedSamples placed;
@@ -157,17 +166,16 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays,
                                     footprint.empty() ? torch::Tensor() : SharesOf(footprint));
   ScaleGradients(out.field, t, parts_.gradient_scaling.full_distance);
 
-  const torch::Tensor background = parts_.background ? parts_.background->forward(directions)
-                                                     : TensorOf(rays.background, {count, 3}, dtype);
   out.pixels =
       RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong), out.field.sigma,
-                   out.field.radiance, TensorOf(out.samples.dt, {size}, dtype), t, background);
+                   out.field.radiance, TensorOf(out.samples.dt, {size}, dtype), t, behind);
   return out;
 }
 
 RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
   const torch::NoGradGuard no_grad;
-  const Evaluated out = Evaluate(rays, nullptr);
+  CheckRays(rays);
+  const Evaluated out = Evaluate(rays, Behind(rays), nullptr);
   const auto to_vector = [](const torch::Tensor& tensor) {
     const torch::Tensor flat = tensor.to(torch::kFloat).contiguous();
     return std::vector<float>(flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel());
@@ -209,24 +217,28 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   if (batch.rays.Size() == 0) return {};  // the mean over nothing is no number
   const torch::Dtype dtype = parts_.field->Dtype();
   const std::int64_t count = batch.rays.Size();
+  CheckRays(batch.rays);
   Evaluated out;
   RayBatch refined;  // autograd reads it until the way back is over
+  const auto photograph = [&] { return TensorOf(batch.photograph, {count}, torch::kLong); };
+  const auto behind = [&](const RayBatch& rays) {
+    const bool exposes = parts_.exposure && !parts_.background;
+    return exposes ? parts_.exposure->Unexposed(Behind(rays), photograph()) : Behind(rays);
+  };
   if (parts_.poses) {
     const Poses::Moved moved =
         parts_.poses->forward(TensorOf(batch.rays.origin, {count, 3}, dtype),
-                              TensorOf(batch.rays.direction, {count, 3}, dtype),
-                              TensorOf(batch.photograph, {count}, torch::kLong));
+                              TensorOf(batch.rays.direction, {count, 3}, dtype), photograph());
     refined = Poses::WithMoved(batch.rays, moved);
-    out = Evaluate(refined, &moved);
+    out = Evaluate(refined, behind(refined), &moved);
   } else {
-    out = Evaluate(batch.rays, nullptr);
+    out = Evaluate(batch.rays, behind(batch.rays), nullptr);
   }
   const torch::Tensor target =
       TensorOf(batch.rgb, {batch.rays.Size(), 3}, out.pixels.rgb.scalar_type());
   torch::Tensor rgb = out.pixels.rgb;
   if (parts_.exposure) {
-    rgb = parts_.exposure->forward(
-        rgb, TensorOf(batch.photograph, {batch.rays.Size()}, torch::kLong), target);
+    rgb = parts_.exposure->forward(rgb, photograph(), target);
   }
   torch::Tensor loss = ColorLoss(rgb, target, parts_.loss, robust_);
   if (parts_.depth && !batch.distance.empty()) {

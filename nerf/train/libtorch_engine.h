@@ -26,7 +26,8 @@ class LibTorchEngine : public Engine {
  private:
   struct Evaluated;
   torch::Tensor DepthLoss(const TargetBatch& batch, const Evaluated& out) const;
-  Evaluated Evaluate(const RayBatch& rays, const Poses::Moved* moved);
+  torch::Tensor Behind(const RayBatch& rays) const;
+  Evaluated Evaluate(const RayBatch& rays, const torch::Tensor& behind, const Poses::Moved* moved);
   PackedSamples VisibleSamples(const RayBatch& rays, const PackedSamples& samples);
   std::vector<float> FootprintsOf(const RayBatch& rays, const PackedSamples& samples) const;
   torch::Tensor SharesOf(std::span<const float> footprint) const;

@@ -19,13 +19,23 @@ ChannelLoss LossOf(double error, const LossOptions& options) {
 
 }  // namespace
 
+TargetBatch WithUnexposedBackgrounds(TargetBatch batch, std::span<const float> gain) {
+  for (std::int64_t r = 0; r < batch.rays.Size(); ++r) {
+    for (int c = 0; c < 3; ++c) {
+      batch.rays.background[3 * r + c] /= gain[3 * batch.photograph[r] + c];
+    }
+  }
+  return batch;
+}
+
 void PixelLoss::Clear(const PixelModel& model) {
   loss = squared_error = 0;
   dL_dlog_gain.assign(model.gain.size(), 0.0);
 }
 
 bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int64_t first,
-                    std::span<const float> rgb, std::span<float> ray_error) {
+                    std::span<const float> rgb, std::span<const float> opacity,
+                    std::span<float> ray_error) {
   const auto count = static_cast<std::int64_t>(rgb.size() / 3);
   const double channels = 3.0 * static_cast<double>(batch.rays.Size());
   dL_drgb.resize(3 * count);
@@ -57,7 +67,13 @@ bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int6
     for (int c = 0; c < 3; ++c) {
       dL_drgb[3 * r + c] =
           static_cast<float>(pull * dL_dshown[c] * static_cast<double>(gain ? gain[c] : 1.0f));
-      if (gain) dL_dlog_gain[photograph + c] += pull * dL_dshown[c] * shown[c];
+      if (!gain) continue;
+      double exposed = shown[c];  // without what was laid under it afterwards
+      if (model.unexposed) {
+        exposed -= static_cast<double>(gain[c] * (1 - opacity[r]) *
+                                       batch.rays.background[3 * (first + r) + c]);
+      }
+      dL_dlog_gain[photograph + c] += pull * dL_dshown[c] * exposed;
     }
     of_tile += of_ray;
     squared_error += squared;

@@ -1,9 +1,8 @@
 #include "nerf/train/validation.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
-#include <span>
+#include <vector>
 
 #include "nerf/effects/exposure_fit.h"
 #include "nerf/effects/poses.h"
@@ -17,19 +16,26 @@ namespace {
 
 constexpr std::int64_t kRays = 8192;
 
-void FitToPhotographs(std::span<float> rgb, const TargetBatch& truth, ColorEncoding encoding) {
+void FitToPhotographs(RenderOutput& out, const TargetBatch& truth, ColorEncoding encoding) {
   std::map<std::int64_t, std::vector<std::size_t>> rays_of;
   for (std::size_t r = 0; r < truth.photograph.size(); ++r) {
     rays_of[truth.photograph[r]].push_back(r);
   }
+  const std::vector<float> all_through = SeenThrough(out.opacity, truth.rays.background);
   for (const auto& [photograph, rays] : rays_of) {
-    std::vector<float> rendered, shown;
+    std::vector<float> rendered, shown, through;
+    const auto take = [](std::size_t r, const std::vector<float>& from, std::vector<float>& to) {
+      to.insert(to.end(), &from[3 * r], &from[3 * r] + 3);
+    };
     for (const std::size_t r : rays) {
-      rendered.insert(rendered.end(), &rgb[3 * r], &rgb[3 * r] + 3);
-      shown.insert(shown.end(), &truth.rgb[3 * r], &truth.rgb[3 * r] + 3);
+      take(r, out.rgb, rendered);
+      take(r, truth.rgb, shown);
+      take(r, all_through, through);
     }
-    const std::array<float, 3> gains = FitGains(rendered, shown, encoding);
-    for (const std::size_t r : rays) ApplyGains(gains, rgb.subspan(3 * r, 3));
+    ApplyGains(FitGains(rendered, shown, through, encoding), through, rendered);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      std::copy_n(&rendered[3 * k], 3, &out.rgb[3 * rays[k]]);
+    }
   }
 }
 
@@ -67,7 +73,7 @@ RayBatch Validation::Rays(const Model& model) const {
 
 double Validation::Psnr(const Model& model, bool fit_exposure) const {
   RenderOutput out = model.engine->Render(Rays(model));
-  if (fit_exposure) FitToPhotographs(out.rgb, batch_, model.scene.encoding);
+  if (fit_exposure) FitToPhotographs(out, batch_, model.scene.encoding);
   double sum = 0;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {
     const double error = std::clamp(out.rgb[i], 0.0f, 1.0f) - std::clamp(batch_.rgb[i], 0.0f, 1.0f);

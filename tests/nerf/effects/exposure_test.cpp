@@ -98,20 +98,49 @@ TEST(Exposure, MeansTheSameInBothEngines) {
 TEST(FitGains, FindsTheGainsOfAPhotograph) {
   const std::vector<float> rendered = {0.1f, 0.2f, 0.3f, 0.5f, 0.4f, 0.6f, 0.9f, 0.9f, 0.9f};
   std::vector<float> shown = rendered;
-  ApplyGains({1.3f, 0.7f, 1.0f}, shown);
+  ApplyGains({1.3f, 0.7f, 1.0f}, {}, shown);
   shown[6] = 1;  // 1.17, and white is no more than 1
-  const auto gains = FitGains(rendered, shown, ColorEncoding::kSrgb);
+  const auto gains = FitGains(rendered, shown, {}, ColorEncoding::kSrgb);
   EXPECT_NEAR(gains[0], 1.3, 1e-6);
   EXPECT_NEAR(gains[1], 0.7, 1e-6);
   EXPECT_NEAR(gains[2], 1.0, 1e-6);
 }
 
+// What is laid under a photograph that is cut out stays as it is, whatever the exposure.
+TEST(Exposure, LeavesTheBackgroundOfACutOutAlone) {
+  test::TwoEngines e;
+  e.exposure = SomeExposure(ColorEncoding::kSrgb);
+  e.Make(50);
+  e.grid->KeepVisible([](const Vector3f&, float) { return false; });  // nothing before it
+  e.batch.rgb = e.batch.rays.background;
+  for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
+    EXPECT_LT((e.*engine)->AccumulateGradients(e.batch).squared_error, 1e-12);
+    const torch::Tensor slope = e.exposure->parameters()[0].grad();
+    EXPECT_TRUE(!slope.defined() || slope.abs().max().item<double>() < 1e-6);
+  }
+}
+
+TEST(FitGains, LeavesWhatIsSeenThroughTheSceneAlone) {
+  const std::vector<float> opacity = {1.0f, 0.5f, 0.0f}, white = {1, 1, 1};
+  const std::vector<float> through = SeenThrough(opacity, white);
+  EXPECT_EQ(through, (std::vector<float>{0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 1, 1}));
+  const std::vector<float> rendered = {0.2f, 0.3f, 0.4f, 0.7f, 0.6f, 0.8f, 1, 1, 1};
+  std::vector<float> shown = rendered;
+  ApplyGains({1.5f, 1.2f, 0.5f}, through, shown);
+  EXPECT_EQ(std::vector<float>(shown.begin() + 6, shown.end()), white);
+  EXPECT_NEAR(shown[3], 1.5 * 0.2 + 0.5, 1e-6);
+  const auto gains = FitGains(rendered, shown, through, ColorEncoding::kSrgb);
+  EXPECT_NEAR(gains[0], 1.5, 1e-5);
+  EXPECT_NEAR(gains[1], 1.2, 1e-5);
+  EXPECT_NEAR(gains[2], 0.5, 1e-5);
+}
+
 TEST(FitGains, OfNothingIsOne) {
   const std::vector<float> black(6, 0.0f), white(6, 1.0f);
   const std::array<float, 3> one = {1, 1, 1};
-  EXPECT_EQ(FitGains(black, white, ColorEncoding::kSrgb), one);
-  EXPECT_EQ(FitGains(black, white, ColorEncoding::kLinear), one);
-  EXPECT_EQ(FitGains({}, {}, ColorEncoding::kLinear), one);
+  EXPECT_EQ(FitGains(black, white, {}, ColorEncoding::kSrgb), one);
+  EXPECT_EQ(FitGains(black, white, {}, ColorEncoding::kLinear), one);
+  EXPECT_EQ(FitGains({}, {}, {}, ColorEncoding::kLinear), one);
 }
 
 // A ball with a pattern before surroundings that differ in each direction, photographed with

@@ -50,7 +50,11 @@ TEST_P(EffectOnTheWholePath, HasGradientsThatAreCentralDifferences) {
 std::shared_ptr<Poses> ThreePoses() {
   const std::vector<CameraPlace> places = {
       {{2, 0, 0}, {-1, 0, 0}, 0}, {{0, 2, 0}, {0, -1, 0}, 0}, {{0, 0, 2}, {0, 0, -1}, 0}};
-  return std::make_shared<Poses>(places, PosesOptions());
+  auto poses = std::make_shared<Poses>(places, PosesOptions());
+  const torch::NoGradGuard no_grad;
+  torch::manual_seed(4);
+  for (torch::Tensor& parameter : poses->parameters()) parameter.normal_(0, 0.5);
+  return poses;
 }
 
 INSTANTIATE_TEST_SUITE_P(
