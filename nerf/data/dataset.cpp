@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <iterator>
 #include <optional>
 
 #include "nerf/data/camera.h"
-#include "nerf/data/image_io.h"
 #include "nerf/parallel.h"
 #include "nerf/sampling/random.h"
 #include "nerf/sampling/rays.h"
@@ -67,37 +65,6 @@ bool ShowsSomething(const std::vector<View>& views) {
     }
     return false;
   });
-}
-
-// 1 where a photograph is not white to the end of its scale in any channel, 0 where it is.
-Image NotWhite(const Image& photograph) {
-  Image below(photograph.width, photograph.height, 1, ColorEncoding::kLinear);
-  for (std::size_t i = 0; i < below.pixels.size(); ++i) {
-    const float* const rgb = &photograph.pixels[i * photograph.channels];
-    const bool transparent = photograph.channels == 4 && rgb[3] == 0;
-    below.pixels[i] = transparent || std::max({rgb[0], rgb[1], rgb[2]}) < 1 ? 1.0f : 0.0f;
-  }
-  return below;
-}
-
-// The pixels that are in both; all are in one that is empty.
-std::vector<std::uint32_t> Both(const std::vector<std::uint32_t>& some,
-                                const std::vector<std::uint32_t>& others) {
-  if (some.empty()) return others;
-  std::vector<std::uint32_t> both;
-  std::ranges::set_intersection(some, others, std::back_inserter(both));
-  return both;
-}
-
-// The photographs to be read that are display-referred where others are linear.
-int DisplayReferredAmongLinear(const sfm::PosedImages& posed) {
-  int display = 0, linear = 0;
-  for (const sfm::PosedImage& image : posed.images) {
-    if (image.split == sfm::Split::kTest) continue;
-    const std::optional<ColorEncoding> encoding = ReadColorEncoding(image.path);
-    if (encoding) ++(*encoding == ColorEncoding::kLinear ? linear : display);
-  }
-  return linear > 0 ? display : 0;
 }
 
 // How many photographs may be decoded at once: each takes a float image and another while it is
@@ -201,48 +168,6 @@ void AssignSplits(sfm::PosedImages& posed, const DataOptions& options) {
   for (std::size_t k = 0; k < count; ++k) {
     train[(2 * k + 1) * train.size() / (2 * count)]->split = sfm::Split::kValidation;
   }
-}
-
-Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image,
-                          const PhotographOptions& options) {
-  Photograph photograph = {ReadImage(image.path, image.upright_by_exif), {}};
-  Image& pixels = photograph.pixels;
-  const sfm::Camera& camera = posed.cameras[image.camera];
-  if (pixels.width != camera.width || pixels.height != camera.height) {
-    throw sfm::InputError(
-        "{}: is {}x{} pixels, but its camera in {} is {}x{}; give the photographs that the poses "
-        "were made from",
-        image.path.string(), pixels.width, pixels.height, posed.source.string(), camera.width,
-        camera.height);
-  }
-  if (options.masks && !image.mask.empty()) {
-    const Image mask = ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif);
-    if (options.masks->meaning == "empty") {
-      pixels = WithMask(pixels, mask);
-    } else {
-      photograph.whole = WholePixels(mask, options.downscale);
-      if (photograph.whole.empty()) {
-        throw sfm::InputError("{}: masks out the whole photograph; black is what it masks out",
-                              image.mask.string());
-      }
-    }
-  }
-  if (options.linear && pixels.encoding == ColorEncoding::kSrgb) {
-    photograph.whole = Both(photograph.whole, WholePixels(NotWhite(pixels), options.downscale));
-    if (photograph.whole.empty()) {
-      throw sfm::InputError(
-          "{}: is white to the end of its scale and says nothing beside linear "
-          "images",
-          image.path.string());
-    }
-    if (static_cast<std::int64_t>(photograph.whole.size()) ==
-        PixelsOf(Downscaled(camera, options.downscale))) {
-      photograph.whole.clear();  // all
-    }
-    pixels = ToLinear(pixels);
-  }
-  pixels = Downscale(pixels, options.downscale);
-  return photograph;
 }
 
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,

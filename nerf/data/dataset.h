@@ -10,6 +10,7 @@
 
 #include "nerf/data/image.h"
 #include "nerf/data/mask.h"
+#include "nerf/data/photograph.h"
 #include "sfm/posed_images.h"
 #include "sfm/scene_normalization.h"
 
@@ -79,14 +80,6 @@ struct Dataset {
   std::vector<std::string> skipped;  // photographs that could not be read, with the reason
 };
 
-// How photographs are read: how small, and what their masks mean where they count.
-struct PhotographOptions {
-  int downscale = 1;
-  std::optional<MaskOptions> masks;
-  bool linear = false;  // display-referred ones too, as far as they are not white to the end of
-                        // their scale: how bright it is there they do not say
-};
-
 // Reads the training and validation photographs on all threads, or on as many as can decode at once
 // within that much memory again, at least one. A photograph that cannot be read is
 // named in `skipped` and left out. Where some are linear (EXR, HDR), all are made so. Throws
@@ -96,14 +89,6 @@ struct PhotographOptions {
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
                     const std::optional<MaskOptions>& masks,
                     const sfm::SceneNormalization& normalized_from_world);
-
-// One photograph as evaluation and training see it: upright, downscaled, 3 or 4 channels.
-struct Photograph {
-  Image pixels;
-  std::vector<std::uint32_t> whole;  // pixels that count, rising; empty: all
-};
-Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& image,
-                          const PhotographOptions& options);
 
 // What is seen through transparent pixels wherever a picture is made: white where photographs have
 // alpha (the NeRF-synthetic protocol), black elsewhere.

@@ -215,6 +215,7 @@ TEST_F(TrainCommand, BadInputGetsOneClearLine) {
       "train " + Poses() + " -o " + Path("x") + " --target-psnr 30 --set data.validation_images=0",
       HasSubstr("data.validation_images"));
   ExpectRefused("train --resume --time-budget 5s -o " + Path("x"), HasSubstr("--time-budget"));
+  ExpectRefused("train --resume --effects +robust -o " + Path("x"), HasSubstr("--effects"));
   EXPECT_FALSE(fs::exists(Path("x")));
 }
 

@@ -121,6 +121,21 @@ TEST(Inspect, RaysBeginBeforeWhateverACameraSees) {
   FAIL() << "no verdict on where rays begin";
 }
 
+TEST(Inspect, WithoutALearnedBackgroundContractedSpaceHoldsWhatIsFar) {
+  const test::ScratchFolder folder;
+  sample::WriteSample(folder.path(), Small(Occasion::kBackground));
+  const sfm::PosedImages posed =
+      sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
+  for (const bool learned : {true, false}) {
+    const Inspection inspection = Inspect(posed, {}, learned);
+    const auto unbounded = std::ranges::find(inspection.verdicts, "unbounded", &Verdict::effect);
+    ASSERT_NE(unbounded, inspection.verdicts.end());
+    EXPECT_EQ(unbounded->on, !learned);
+    const bool fitted = inspection.normalized_from_world.scale != sfm::NormalizeScene(posed).scale;
+    EXPECT_EQ(fitted, learned);
+  }
+}
+
 TEST(Inspect, WithoutSparsePointsOnlyFactsAreDecided) {
   const test::ScratchFolder folder;
   sample::WriteSample(folder.path(), Small(Occasion::kAlpha));
