@@ -110,7 +110,7 @@ void RunEval(const EvalArguments& arguments) {
     LapTimer reading;
     try {
       Photograph photograph =
-          LoadPhotograph(run.posed, *image, {downscale, run.model.config.effects.masks});
+          LoadPhotograph(run.posed, *image, {downscale, MeaningOf(run.model.config.effects.masks)});
       truth = OnWhite(photograph.pixels);
       whole = std::move(photograph.whole);
     } catch (const sfm::InputError& error) {

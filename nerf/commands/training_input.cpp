@@ -118,7 +118,8 @@ Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
         "effects.masks: no photograph has a mask; put them into a folder masks beside the "
         "photographs, IMAGE.png each, or leave the effect away");
   }
-  Dataset data = LoadDataset(posed, config.data, config.effects.masks, normalized_from_world);
+  Dataset data =
+      LoadDataset(posed, config.data, MeaningOf(config.effects.masks), normalized_from_world);
   if (!data.skipped.empty()) {
     for (const std::string& reason : data.skipped) spdlog::warn("{}", reason);
     spdlog::warn("{} images could not be read and are left out", data.skipped.size());

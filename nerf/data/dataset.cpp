@@ -171,7 +171,7 @@ void AssignSplits(sfm::PosedImages& posed, const DataOptions& options) {
 }
 
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
-                    const std::optional<MaskOptions>& masks,
+                    std::optional<MaskMeaning> masks,
                     const sfm::SceneNormalization& normalized_from_world) {
   Dataset data;
   const auto count = static_cast<std::int64_t>(posed.images.size());

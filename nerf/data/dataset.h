@@ -87,7 +87,7 @@ struct Dataset {
 // Pixels that a mask says to ignore are not held, and never drawn, nor are those of made-linear
 // photographs that are white.
 Dataset LoadDataset(const sfm::PosedImages& posed, const DataOptions& options,
-                    const std::optional<MaskOptions>& masks,
+                    std::optional<MaskMeaning> masks,
                     const sfm::SceneNormalization& normalized_from_world);
 
 // What is seen through transparent pixels wherever a picture is made: white where photographs have

@@ -8,11 +8,6 @@
 
 namespace nerf {
 
-void MaskOptions::Check() const {
-  if (meaning == "ignore" || meaning == "empty") return;
-  throw sfm::InputError("config: effects.masks.meaning is {}; use ignore or empty", meaning);
-}
-
 Image ReadMask(const std::filesystem::path& path, int width, int height, bool upright_by_exif) {
   const Image file = ReadImage(path, upright_by_exif);
   if (file.width != width || file.height != height) {

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "nerf/data/image.h"
@@ -10,14 +9,8 @@
 
 namespace nerf {
 
-// What black pixels of the photographs' masks mean: "ignore", what stands there is not of the scene
-// (a passer-by, the photographer's finger), or "empty", nothing stands there (a subject that was
-// cut out).
-struct MaskOptions {
-  std::string meaning = "ignore";
-
-  void Check() const;
-};
+// What black pixels of a mask mean: they do not count, or nothing stands there.
+enum class MaskMeaning { kIgnore, kEmpty };
 
 // Which part of each pixel a mask leaves: 0 where it is black, 1 elsewhere.
 //   width, height  of the photograph, which the mask must have

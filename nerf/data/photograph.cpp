@@ -48,7 +48,7 @@ Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& 
   }
   if (options.masks && !image.mask.empty()) {
     const Image mask = ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif);
-    if (options.masks->meaning == "empty") {
+    if (*options.masks == MaskMeaning::kEmpty) {
       pixels = WithMask(pixels, mask);
     } else {
       photograph.whole = WholePixels(mask, options.downscale);

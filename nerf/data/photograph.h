@@ -13,7 +13,7 @@ namespace nerf {
 // How photographs are read: how small, and what their masks mean where they count.
 struct PhotographOptions {
   int downscale = 1;
-  std::optional<MaskOptions> masks;
+  std::optional<MaskMeaning> masks;
   bool linear = false;  // display-referred ones too, as far as they are not white to the end of
                         // their scale: how bright it is there they do not say
 };

@@ -2,11 +2,11 @@
 
 #include <optional>
 
-#include "nerf/data/mask.h"
 #include "nerf/effects/background_map.h"
 #include "nerf/effects/depth.h"
 #include "nerf/effects/exposure_fit.h"
 #include "nerf/effects/footprint.h"
+#include "nerf/effects/masks.h"
 #include "nerf/effects/poses_options.h"
 #include "nerf/effects/robust.h"
 #include "nerf/effects/unbounded.h"

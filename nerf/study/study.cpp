@@ -104,7 +104,7 @@ const Study::Photographs& Study::Read(const Config& config) {
   if (is_new) {
     const Stopwatch watch;
     found->second.data =
-        LoadDataset(posed_, config.data, config.effects.masks, normalized_from_world_);
+        LoadDataset(posed_, config.data, MeaningOf(config.effects.masks), normalized_from_world_);
     found->second.seconds = watch.Seconds();
   }
   return found->second;
@@ -142,7 +142,8 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
     double psnr = 0, ssim = 0, frame = 0;
     for (const sfm::PosedImage* image : held_out_) {
       const Image truth = OnWhite(
-          LoadPhotograph(posed_, *image, {options_.downscale, config.effects.masks}).pixels);
+          LoadPhotograph(posed_, *image, {options_.downscale, MeaningOf(config.effects.masks)})
+              .pixels);
       const Stopwatch of_frame;
       const RenderedView view =
           RenderView(*renderer, Downscaled(posed_.cameras[image->camera], options_.downscale),

@@ -84,7 +84,7 @@ class LoadedDataset : public testing::Test {
 
   test::ScratchFolder folder_;
   sfm::PosedImages posed_;
-  std::optional<MaskOptions> masks_;
+  std::optional<MaskMeaning> masks_;
 };
 
 TEST_F(LoadedDataset, MasksThatLeaveEverythingChangeNothing) {
@@ -93,8 +93,8 @@ TEST_F(LoadedDataset, MasksThatLeaveEverythingChangeNothing) {
   Image white(4, 4, 3);
   std::ranges::fill(white.pixels, 1.0f);
   WriteImage(posed_.images[1].mask, white);
-  for (const char* meaning : {"ignore", "empty"}) {
-    masks_ = MaskOptions{meaning};
+  for (const MaskMeaning meaning : {MaskMeaning::kIgnore, MaskMeaning::kEmpty}) {
+    masks_ = meaning;
     const Dataset masked = Load();
     EXPECT_EQ(masked.has_alpha, plain.has_alpha);
     for (std::size_t i = 0; i < plain.train.size(); ++i) {
@@ -107,7 +107,7 @@ TEST_F(LoadedDataset, MasksThatLeaveEverythingChangeNothing) {
 TEST_F(LoadedDataset, PixelsToIgnoreAreNotHeld) {
   MaskTheSecond();
   EXPECT_EQ(Load().train[1].Held(), 16);  // the effect is off
-  masks_ = MaskOptions{"ignore"};
+  masks_ = MaskMeaning::kIgnore;
   const Dataset data = Load();
   EXPECT_FALSE(data.has_alpha);
   EXPECT_EQ(data.train[0].Held(), 16);
@@ -127,7 +127,7 @@ TEST_F(LoadedDataset, PhotographsAmongLinearImagesBecomeLinearWhereTheyAreNotWhi
   std::fill_n(photograph.pixels.begin(), 3 * 4, 1.0f);  // the first row
   WriteImage(posed_.images[1].path, photograph);
   MaskTheSecond();  // leaves two rows
-  masks_ = MaskOptions{"ignore"};
+  masks_ = MaskMeaning::kIgnore;
   const Dataset data = Load();
   EXPECT_EQ(data.encoding, ColorEncoding::kLinear);
   EXPECT_EQ(data.made_linear, 2);
@@ -155,7 +155,7 @@ TEST_F(LoadedDataset, AWhitePhotographAmongLinearImagesSaysNothing) {
 
 TEST_F(LoadedDataset, EmptyPixelsAreTransparent) {
   MaskTheSecond();
-  masks_ = MaskOptions{"empty"};
+  masks_ = MaskMeaning::kEmpty;
   const Dataset data = Load();
   EXPECT_TRUE(data.has_alpha);
   ASSERT_EQ(data.train[1].Held(), 16);
@@ -166,7 +166,7 @@ TEST_F(LoadedDataset, EmptyPixelsAreTransparent) {
 
 TEST_F(LoadedDataset, AMaskOfAnotherSizeIsRefusedWithBothSizes) {
   MaskTheSecond(4, 2);
-  masks_ = MaskOptions{};
+  masks_ = MaskMeaning::kIgnore;
   EXPECT_THAT(test::InputErrorOf([&] { Load(); }),
               testing::AllOf(testing::HasSubstr("mask.png"), testing::HasSubstr("4x2"),
                              testing::HasSubstr("4x4")));
@@ -175,7 +175,7 @@ TEST_F(LoadedDataset, AMaskOfAnotherSizeIsRefusedWithBothSizes) {
 TEST_F(LoadedDataset, AMaskThatIsNoImageIsNamed) {
   MaskTheSecond();
   std::ofstream(posed_.images[1].mask) << "none";
-  masks_ = MaskOptions{};
+  masks_ = MaskMeaning::kIgnore;
   EXPECT_THAT(test::InputErrorOf([&] { Load(); }), testing::HasSubstr("mask.png"));
 }
 

@@ -54,10 +54,6 @@ TEST(Mask, OfAnotherSizeIsRefused) {
               testing::AllOf(testing::HasSubstr("6x4"), testing::HasSubstr("4x6")));
 }
 
-TEST(Mask, WithoutAMeaningThatIsKnownIsRefused) {
-  EXPECT_THAT(test::InputErrorOf([] { MaskOptions{"sky"}.Check(); }), testing::HasSubstr("sky"));
-}
-
 TEST(FindMasks, LooksBesideThePhotographAndBesideItsFolder) {
   const test::ScratchFolder folder;
   const auto images = folder.path() / "images", masks = folder.path() / "masks";

@@ -1,0 +1,28 @@
+#include "nerf/effects/masks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/input_error_of.h"
+
+namespace nerf {
+namespace {
+
+TEST(MasksEffect, WithoutAMeaningThatIsKnownIsRefused) {
+  EXPECT_THAT(test::InputErrorOf([] { MaskOptions{"sky"}.Check(); }),
+              testing::AllOf(testing::HasSubstr("effects.masks.meaning"), testing::HasSubstr("sky"),
+                             testing::HasSubstr("ignore or empty")));
+}
+
+TEST(MasksEffect, MeansNothingToPhotographsWhereItIsOff) {
+  EXPECT_EQ(MeaningOf(std::nullopt), std::nullopt);
+}
+
+TEST(MasksEffect, MeansWhatItIsCalled) {
+  EXPECT_EQ(MeaningOf(MaskOptions{"ignore"}), MaskMeaning::kIgnore);
+  EXPECT_EQ(MeaningOf(MaskOptions{"empty"}), MaskMeaning::kEmpty);
+  EXPECT_EQ(MeaningOf(MaskOptions()), MaskMeaning::kIgnore);  // as COLMAP's masks
+}
+
+}  // namespace
+}  // namespace nerf
