@@ -4,6 +4,7 @@
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -57,6 +58,12 @@ std::vector<double> EffectsChoice::StopsOfTrained(const sfm::PosedImages& posed,
   return stops.size() == data.train.size() ? stops : std::vector<double>();
 }
 
+bool EffectsChoice::IsOpen(const std::string& effect) const {
+  return std::ranges::any_of(inspection_.verdicts, [&](const Verdict& verdict) {
+    return verdict.effect == effect && nerf::IsOpen(verdict, named_);
+  });
+}
+
 void EffectsChoice::Try(const Config& config, const SceneFacts& scene, double seconds_left,
                         Dataset& data) {
   const EffectTrials trials =
@@ -65,9 +72,7 @@ void EffectsChoice::Try(const Config& config, const SceneFacts& scene, double se
   trial_seconds_ = trials.seconds;
   std::vector<std::string> open;
   for (const Verdict& v : inspection_.verdicts) {
-    if (IsChosen(v) && v.decided && !v.IsSure() && !named_.contains(v.effect)) {
-      open.push_back(v.effect);
-    }
+    if (IsChosen(v) && v.decided && nerf::IsOpen(v, named_)) open.push_back(v.effect);
   }
   if (!open.empty()) {
     fmt::print("not sure, and so as configured: {}\n", fmt::join(open, ", "));

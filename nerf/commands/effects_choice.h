@@ -26,6 +26,9 @@ class EffectsChoice {
   //   posed  that was looked at
   std::vector<double> StopsOfTrained(const sfm::PosedImages& posed, const Dataset& data) const;
 
+  // Whether an effect is to be tried.
+  bool IsOpen(const std::string& effect) const;
+
   // Tries what the look left open (nerf/commands/effects_trials.h), and prints it.
   //   seconds_left  of the time budget, where there is one
   void Try(const Config& config, const SceneFacts& scene, double seconds_left, Dataset& data);

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
-#include <optional>
+#include <map>
+#include <string>
 
 #include "nerf/stopwatch.h"
 #include "nerf/train/effect_trial.h"
@@ -14,81 +15,88 @@
 namespace nerf {
 namespace {
 
-// What a short training can tell: the others are facts, need what is not at hand, or (poses) cannot
-// be judged by photographs whose own poses are not refined.
-const std::set<std::string> kTried = {"exposure", "view", "robust", "footprint"};
-constexpr int kSteps = 200;
 constexpr std::int64_t kSamples = 16384;   // a step
 constexpr double kWorthIt = 0.2;           // dB, more than the noise of a trial
 constexpr double kShare = 0.15;            // of the training, that trials may take
 constexpr std::size_t kFewestHeldOut = 2;  // on one photograph a difference is chance
 
-// Where nothing tells at all, exposure alone is tried: photographs often differ in it, and it may
-// be worth ten decibels.
-bool IsOpen(const Verdict& verdict, const std::set<std::string>& named) {
-  if (verdict.IsSure() || named.contains(verdict.effect)) return false;
-  return verdict.decided ? kTried.contains(verdict.effect) : verdict.effect == "exposure";
-}
+// Steps of a trial. Poses must be found before they are worth anything.
+int StepsOf(const std::string& effect) { return effect == "poses" ? 400 : 200; }
 
-// How long trials may go on: by the clock where a training ends by it, else by their number.
+// How long trials may go on: by the clock where a training ends by it, else by their steps.
 class Allowance {
  public:
   Allowance(const TrainOptions& options, double seconds_left)
       : seconds_(options.time_budget > 0 ? kShare * seconds_left
                                          : std::numeric_limits<double>::infinity()),
-        trainings_(options.time_budget > 0 ? std::numeric_limits<double>::infinity()
-                                           : kShare * static_cast<double>(options.steps) *
-                                                 static_cast<double>(options.samples_per_batch) /
-                                                 (static_cast<double>(kSteps) * kSamples)) {}
-  // Whether so many trainings more fit, by what those before have taken; the first by a guess.
-  bool Has(int more) const {
-    constexpr double kGuess = 4;  // seconds
-    const double each = done_ > 0 ? watch_.Seconds() / done_ : kGuess;
-    return done_ + more <= trainings_ && watch_.Seconds() + more * each <= seconds_;
+        steps_(options.time_budget > 0
+                   ? std::numeric_limits<double>::infinity()
+                   : kShare * static_cast<double>(options.steps) *
+                         static_cast<double>(options.samples_per_batch) / kSamples) {}
+  // Whether so many steps more fit.
+  bool Has(int more, double seconds_a_step) const {
+    return done_ + more <= steps_ && watch_.Seconds() + more * seconds_a_step <= seconds_;
   }
-  void Count() { ++done_; }
+  void Count(int steps) { done_ += steps; }
   double Seconds() const { return watch_.Seconds(); }
 
  private:
-  double seconds_, trainings_;
+  double seconds_, steps_;
   int done_ = 0;
   Stopwatch watch_;
 };
 
+// Seconds that a step of a trial will take, with its share of all else, by the first ones.
+double SecondsOfAStep(const Config& trial, const SceneFacts& scene, const Dataset& data) {
+  constexpr int kFirst = 10, kShortest = 200;
+  const TrialResult result = TryConfig(trial, scene, data, kFirst);
+  const double all_else = result.seconds - kFirst * result.seconds_a_step;
+  return result.seconds_a_step + all_else / kShortest;
+}
+
 }  // namespace
+
+bool IsOpen(const Verdict& verdict, const std::set<std::string>& named) {
+  if (verdict.IsSure() || named.contains(verdict.effect)) return false;
+  return verdict.decided || verdict.effect == "exposure";
+}
 
 EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
                            const std::set<std::string>& named, double seconds_left, Dataset& data,
                            std::vector<Verdict>& verdicts) {
   EffectTrials trials;
   Allowance allowance(config.train, seconds_left);
-  const HeldOut held_out(data, scene);
-  if (data.validation.size() < kFewestHeldOut) return trials;
+  const HeldOutHalves held_out(data);
+  if (held_out.Count() < kFewestHeldOut) return trials;
   Config trial = config;
   trial.train.samples_per_batch = kSamples;
-  const auto psnr_of = [&](const Config& tried) {
-    const double psnr = TryConfig(tried, held_out.Scene(), data, kSteps).psnr;
-    allowance.Count();
-    return psnr;
+  const auto psnr_of = [&](const Config& tried, int steps) {
+    allowance.Count(steps);
+    return TryConfig(tried, scene, data, steps).psnr;
   };
-  std::optional<double> as_it_is;  // the PSNR of `trial`
+  double seconds_a_step = 0;       // not known before the first trial
+  std::map<int, double> as_it_is;  // PSNR of `trial` after so many steps
   for (Verdict& verdict : verdicts) {
-    if (!IsOpen(verdict, named) || !allowance.Has(as_it_is ? 1 : 2)) continue;
+    const int steps = StepsOf(verdict.effect);
+    const int needed = as_it_is.contains(steps) ? steps : 2 * steps;
+    if (!IsOpen(verdict, named) || !allowance.Has(needed, seconds_a_step)) continue;
+    if (seconds_a_step == 0) seconds_a_step = SecondsOfAStep(trial, scene, data);
+    if (!allowance.Has(needed, seconds_a_step)) continue;
     const bool is_on = Simulates(trial, verdict.effect);
     const Config other = WithEffect(trial, verdict.effect, is_on ? "null" : "{}");
-    if (!as_it_is) as_it_is = psnr_of(trial);
-    const double otherwise = psnr_of(other);
-    const double with = is_on ? *as_it_is : otherwise, without = is_on ? otherwise : *as_it_is;
+    if (!as_it_is.contains(steps)) as_it_is[steps] = psnr_of(trial, steps);
+    const double as_before = as_it_is[steps], otherwise = psnr_of(other, steps);
+    const double with = is_on ? as_before : otherwise, without = is_on ? otherwise : as_before;
     // What is configured stands unless the other is clearly better.
     verdict = Tried(verdict, with, without, is_on ? -kWorthIt : kWorthIt);
     if (verdict.on != is_on) {
       trial = other;
-      as_it_is = otherwise;
+      as_it_is = {{steps, otherwise}};
     }
     trials.assignments.push_back(verdict.assignment);
     fmt::print("{}", RowOf(verdict));
   }
-  if (!as_it_is) return trials;
+  if (as_it_is.empty()) return trials;
   trials.seconds = allowance.Seconds();
   fmt::print("tried for {:.1f} s\n", trials.seconds);
   std::fflush(stdout);

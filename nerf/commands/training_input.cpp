@@ -110,6 +110,14 @@ void KeepSparsePoints(const sfm::PosedImages& found, const Config& config, const
   sfm::WriteColmapText(found, SparsePath(run));
 }
 
+void AddKeptPoints(const sfm::PosedImages& posed,
+                   const sfm::SceneNormalization& normalized_from_world, const fs::path& run,
+                   Dataset& data) {
+  const sfm::PosedImages sparse =
+      sfm::ReadColmapModel(SparsePath(run), ImageFolder(posed.images.front()));
+  AddSeenPoints(sparse, normalized_from_world, data);
+}
+
 Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
                    const sfm::SceneNormalization& normalized_from_world, const fs::path& run) {
   if (config.effects.masks &&
@@ -130,11 +138,7 @@ Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,
         "are made linear, and say nothing where they are white",
         data.made_linear);
   }
-  if (config.effects.depth) {
-    const sfm::PosedImages sparse =
-        sfm::ReadColmapModel(SparsePath(run), ImageFolder(posed.images.front()));
-    AddSeenPoints(sparse, normalized_from_world, data);
-  }
+  if (config.effects.depth) AddKeptPoints(posed, normalized_from_world, run, data);
   return data;
 }
 

@@ -27,6 +27,11 @@ void PrintDataPlan(const sfm::PosedImages& posed, const DataOptions& options, in
 void KeepSparsePoints(const sfm::PosedImages& found, const Config& config,
                       const std::filesystem::path& run);
 
+// Gives the photographs the points that the run keeps.
+void AddKeptPoints(const sfm::PosedImages& posed,
+                   const sfm::SceneNormalization& normalized_from_world,
+                   const std::filesystem::path& run, Dataset& data);
+
 // The photographs, with the points that the run keeps; those that cannot be read are named and left
 // out.
 Dataset LoadOrWarn(const sfm::PosedImages& posed, const Config& config,

@@ -14,6 +14,7 @@
 #include "nerf/commands/training_input.h"
 #include "nerf/config.h"
 #include "nerf/data/dataset.h"
+#include "nerf/effects/depth.h"
 #include "nerf/train/budget_plan.h"
 #include "nerf/train/checkpoint.h"
 #include "nerf/train/run_folder.h"
@@ -159,10 +160,17 @@ void StartRun(const TrainArguments& arguments, int threads, const Stopwatch& wat
   SceneFacts scene = FactsOf(data, normalized_from_world);
   if (effects.inspect) {
     scene.exposure_stops = choice.StopsOfTrained(found, data);
+    const bool tries_depth = choice.IsOpen("depth");
+    if (tries_depth) AddSeenPoints(found, normalized_from_world, data);
     choice.Try(config, scene, config.train.time_budget - watch.Seconds(), data);
     config = configured(arguments.preset);
     WriteConfig(config, run);
     choice.Write(config, run);
+    if (tries_depth && config.effects.depth) {
+      // As a run that resumes reads them.
+      KeepSparsePoints(found, config, run);
+      AddKeptPoints(posed, normalized_from_world, run, data);
+    }
   }
   const double spent = SpentOf(config, watch);
   auto trainer = std::make_unique<Trainer>(config, scene, data, run, spent);

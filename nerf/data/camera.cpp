@@ -111,6 +111,13 @@ sfm::Camera RowsOf(const sfm::Camera& camera, int top, int height) {
   return result;
 }
 
+sfm::Camera ColumnsOf(const sfm::Camera& camera, int left, int width) {
+  sfm::Camera result = camera;
+  result.width = width;
+  result.params[sfm::FirstDistortionParam(camera.model) - 2] -= left;  // and its x
+  return result;
+}
+
 double FocalLength(const sfm::Camera& camera) { return sfm::FocalLengths(camera).mean(); }
 
 sfm::Camera PinholeFromFov(int width, int height, double vertical_fov) {

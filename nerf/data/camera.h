@@ -28,6 +28,8 @@ sfm::Camera Downscaled(const sfm::Camera& camera, int factor);
 
 // The camera of a part of the image: `height` whole rows from row `top` on.
 sfm::Camera RowsOf(const sfm::Camera& camera, int top, int height);
+// The same of whole columns, from column `left` on.
+sfm::Camera ColumnsOf(const sfm::Camera& camera, int left, int width);
 
 // Mean focal length in pixels, and the principal point.
 double FocalLength(const sfm::Camera& camera);

@@ -118,7 +118,7 @@ DataPlan PlanData(const sfm::PosedImages& posed, const DataOptions& options) {
 }
 
 std::int64_t View::Choices() const {
-  return whole.empty() ? PixelsOf(camera) : static_cast<std::int64_t>(whole.size());
+  return ShowsAll() ? PixelsOf(camera) : static_cast<std::int64_t>(whole.size());
 }
 
 std::int64_t View::PixelOf(std::int64_t k) const {
@@ -130,12 +130,12 @@ std::int64_t View::PixelOf(std::int64_t k) const {
     const std::uint64_t bits = RandomBits(seed, kHeldStream, static_cast<std::uint64_t>(k));
     choice = begin + static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(end - begin));
   }
-  return whole.empty() ? choice : whole[choice];
+  return ShowsAll() ? choice : whole[choice];
 }
 
 std::int64_t View::HeldNear(std::int64_t pixel) const {
   std::int64_t choice = pixel;
-  if (!whole.empty()) {
+  if (!ShowsAll()) {
     choice = std::ranges::lower_bound(whole, static_cast<std::uint32_t>(pixel)) - whole.begin();
     choice = std::min(choice, Choices() - 1);
   }

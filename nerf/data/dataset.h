@@ -11,6 +11,7 @@
 #include "nerf/data/image.h"
 #include "nerf/data/mask.h"
 #include "nerf/data/photograph.h"
+#include "nerf/left_out.h"
 #include "sfm/posed_images.h"
 #include "sfm/scene_normalization.h"
 
@@ -69,6 +70,7 @@ struct View {
 
  private:
   std::int64_t Choices() const;
+  bool ShowsAll() const { return kLeftOut<MaskOptions> || whole.empty(); }
 };
 
 struct Dataset {

@@ -9,6 +9,8 @@
 
 namespace nerf {
 
+struct MaskOptions;  // nerf/effects/masks.h, of which nothing but the name is known here
+
 // What black pixels of a mask mean: they do not count, or nothing stands there.
 enum class MaskMeaning { kIgnore, kEmpty };
 

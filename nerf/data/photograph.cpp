@@ -7,6 +7,7 @@
 #include "nerf/data/camera.h"
 #include "nerf/data/image_convert.h"
 #include "nerf/data/image_io.h"
+#include "nerf/left_out.h"
 #include "sfm/input_error.h"
 
 namespace nerf {
@@ -46,7 +47,7 @@ Photograph LoadPhotograph(const sfm::PosedImages& posed, const sfm::PosedImage& 
         image.path.string(), pixels.width, pixels.height, posed.source.string(), camera.width,
         camera.height);
   }
-  if (options.masks && !image.mask.empty()) {
+  if (!kLeftOut<MaskOptions> && options.masks && !image.mask.empty()) {
     const Image mask = ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif);
     if (*options.masks == MaskMeaning::kEmpty) {
       pixels = WithMask(pixels, mask);

@@ -31,7 +31,10 @@ void DepthOptions::Check() const {
 void AddSeenPoints(const sfm::PosedImages& sparse,
                    const sfm::SceneNormalization& normalized_from_world, Dataset& data) {
   std::map<std::string, View*> views;
-  for (View& view : data.train) views[view.name] = &view;
+  for (View& view : data.train) {
+    views[view.name] = &view;
+    view.points.clear();
+  }
   for (const sfm::SparsePoint& point : sparse.points) {
     if (point.track.size() < kFewestSightings || point.reprojection_error > kLargestError) continue;
     const Eigen::Vector3d x = normalized_from_world.NormalizedFromWorld(point.x_in_world);

@@ -5,23 +5,9 @@
 #include <type_traits>
 #include <utility>
 
-namespace nerf {
+#include "nerf/left_out.h"
 
-// Where an effect stands in an engine: a std::shared_ptr to its module or a std::optional of its
-// options, empty where it is not simulated.
-//
-// That an effect which is off costs nothing is measured (scripts/bench --effects): against engines
-// that do not know it, compiled with NERF_LEFT_OUT=Poses or the like. There its slot is a constant
-// that says no, and the compiler leaves out what stands behind `if (parts.poses)`.
-template <class Holder>
-inline constexpr bool kLeftOut = false;
-#ifdef NERF_LEFT_OUT
-class NERF_LEFT_OUT;
-template <>
-inline constexpr bool kLeftOut<std::shared_ptr<NERF_LEFT_OUT>> = true;
-template <>
-inline constexpr bool kLeftOut<std::optional<NERF_LEFT_OUT>> = true;
-#endif
+namespace nerf {
 
 // The slot of an effect that is left out: takes anything and holds nothing.
 template <class Holder>
@@ -36,7 +22,22 @@ struct EmptySlot {
   auto* operator->() const { return &**this; }
 };
 
+// Where an effect stands in an engine: a std::shared_ptr to its module or a std::optional of its
+// options, empty where it is not simulated. In a program compiled without the effect the compiler
+// leaves out what stands behind `if (parts.poses)`.
 template <class Holder>
-using Slot = std::conditional_t<kLeftOut<Holder>, EmptySlot<Holder>, Holder>;
+struct SlotOf;
+template <class Module>
+struct SlotOf<std::shared_ptr<Module>> {
+  using Type = std::conditional_t<kLeftOut<Module>, EmptySlot<std::shared_ptr<Module>>,
+                                  std::shared_ptr<Module>>;
+};
+template <class Options>
+struct SlotOf<std::optional<Options>> {
+  using Type = std::conditional_t<kLeftOut<Options>, EmptySlot<std::optional<Options>>,
+                                  std::optional<Options>>;
+};
+template <class Holder>
+using Slot = typename SlotOf<Holder>::Type;
 
 }  // namespace nerf

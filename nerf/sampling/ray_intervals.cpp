@@ -37,8 +37,8 @@ void EqualIntervals(const RayBatch& rays, std::int64_t r, const MarchOptions& op
     const float place = step * static_cast<float>(k);
     const float behind_near = std::min(DistanceOfPlace(place), far - near);
     const float dt_dplace = place < 1 ? 1 : behind_near * behind_near;
-    const float speed =
-        ContractedSpeed(origin + (near + behind_near) * direction, direction) * dt_dplace;
+    const Eigen::Vector3f x = origin + (near + behind_near) * direction;
+    const float speed = dt_dplace * (options.IsUnbounded() ? ContractedSpeed(x, direction) : 1);
     if (k > 0) length[k] = length[k - 1] + 0.5f * (before + speed) * step;
     before = speed;
   }
@@ -103,7 +103,10 @@ void PackIntervalsOfRay(const RayBatch& rays, std::int64_t r, std::span<const fl
   for (std::size_t i = 0; i < t.size(); ++i) {
     t[i] = 0.5f * (edges[i] + edges[i + 1]);
     dt[i] = edges[i + 1] - edges[i];
-    const Eigen::Vector3f x_in_cube = UnitCubeFromContracted(Contract(origin + t[i] * direction));
+    const Eigen::Vector3f x = origin + t[i] * direction;
+    // In the ball in which rays without the effect end the contraction is the identity.
+    const Eigen::Vector3f x_in_cube =
+        UnitCubeFromContracted(kLeftOut<UnboundedOptions> ? x : Contract(x));
     std::copy_n(x_in_cube.data(), 3, &position[3 * i]);
   }
 }

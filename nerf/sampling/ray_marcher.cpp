@@ -15,27 +15,75 @@ namespace {
 // What a speed is divided by at least.
 constexpr float kSlowest = 1e-20f;
 
-// At most how much faster than x the contracted point moves, r = |x|: the tangential speed, which
-// falls with r. Radially it is 1/r^2.
-float FastestSpeed(float r) { return r <= 1 ? 1.0f : (2.0f - 1.0f / r) / r; }
+// How fast a ray moves, and where it is, in contracted space. For points that are no farther out
+// than poses can be: without ContractedSpeed's care for squares that overflow.
+struct Contracted {
+  static float Speed(const Eigen::Vector3f& x, const Eigen::Vector3f& direction) {
+    const float square = x.squaredNorm();
+    if (square <= 1.0f) return 1.0f;
+    const float inverse = 1.0f / std::sqrt(square);
+    const float radial = x.dot(direction) * inverse;
+    const float along = radial * inverse * inverse;
+    const float across = (2.0f - inverse) * inverse;
+    return std::sqrt(along * along + across * across * std::max(0.0f, 1.0f - radial * radial));
+  }
+  // At most how much faster than x the contracted point moves, r = |x|: the tangential speed, which
+  // falls with r. Radially it is 1/r^2.
+  static float FastestSpeed(const Eigen::Vector3f& x) {
+    const float r = x.norm();
+    return r <= 1 ? 1.0f : (2.0f - 1.0f / r) / r;
+  }
+  static Eigen::Vector3f InCube(const Eigen::Vector3f& x) {
+    const float square = x.squaredNorm();
+    if (square <= 1.0f) return UnitCubeFromContracted(x);
+    const float inverse = 1.0f / std::sqrt(square);
+    return UnitCubeFromContracted(((2.0f - inverse) * inverse) * x);
+  }
+};
 
-// ContractedSpeed for points that are no farther out than poses can be: without its care for
-// squares that overflow.
-float Speed(const Eigen::Vector3f& x, const Eigen::Vector3f& direction) {
-  const float square = x.squaredNorm();
-  if (square <= 1.0f) return 1.0f;
-  const float inverse = 1.0f / std::sqrt(square);
-  const float radial = x.dot(direction) * inverse;
-  const float along = radial * inverse * inverse;
-  const float across = (2.0f - inverse) * inverse;
-  return std::sqrt(along * along + across * across * std::max(0.0f, 1.0f - radial * radial));
-}
+// The same in the unit ball, where nothing is contracted.
+struct Ball {
+  static float Speed(const Eigen::Vector3f&, const Eigen::Vector3f&) { return 1; }
+  static float FastestSpeed(const Eigen::Vector3f&) { return 1; }
+  static Eigen::Vector3f InCube(const Eigen::Vector3f& x) { return UnitCubeFromContracted(x); }
+};
 
-Eigen::Vector3f InCube(const Eigen::Vector3f& x) {
-  const float square = x.squaredNorm();
-  if (square <= 1.0f) return UnitCubeFromContracted(x);
-  const float inverse = 1.0f / std::sqrt(square);
-  return UnitCubeFromContracted(((2.0f - inverse) * inverse) * x);
+template <class Space>
+void March(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
+           const MarchOptions& options, RaySamples& out) {
+  const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
+  const float step = options.StepLength();
+  const auto [near_distance, far_distance] = RangeOfRay(rays, r, options);
+  const float nearest = -origin.dot(direction);  // where the ray passes the centre
+  float t = near_distance;
+  float fraction = 1.0f - rays.jitter[r];
+  while (t < far_distance) {
+    const float speed = Space::Speed(origin + t * direction, direction);
+    // Far out along the ray the contracted point hardly moves; without a bound one step would be
+    // longer than everything before it.
+    const float longest = std::min(std::max(t, 1.0f), far_distance - t);
+    const float dt = std::min(fraction * step / std::max(speed, kSlowest), longest);
+    fraction = 1.0f;
+    const float middle = t + 0.5f * dt;
+    const Eigen::Vector3f x_in_cube = Space::InCube(origin + middle * direction);
+    if (grid.Occupied(x_in_cube)) {
+      out.position.insert(out.position.end(), {x_in_cube[0], x_in_cube[1], x_in_cube[2]});
+      out.t.push_back(middle);
+      out.dt.push_back(dt);
+    } else if (const float free = grid.FreeRadius(x_in_cube); free > 2 * step) {
+      // Over what is empty in one go: as far as the fastest speed on the way allows, which is that
+      // of its innermost point.
+      const auto reach = [&](float at) {
+        return free / std::max(Space::FastestSpeed(origin + at * direction), kSlowest);
+      };
+      const float guess = middle + reach(middle);
+      const float innermost = std::clamp(nearest, middle, guess);
+      t = std::max(t + dt, middle + reach(innermost));
+      continue;
+    }
+    // Even where a step is too short for the precision of t, the ray must move on.
+    t = std::max(t + dt, std::nextafter(t, far_distance));
+  }
 }
 
 }  // namespace
@@ -43,7 +91,7 @@ Eigen::Vector3f InCube(const Eigen::Vector3f& x) {
 RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& options) {
   const auto near = static_cast<float>(options.near_distance);
   const auto far = static_cast<float>(options.far_distance);
-  if (options.unbounded) return {near, far};
+  if (options.IsUnbounded()) return {near, far};
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
   const float middle = -origin.dot(direction);
   // From the point of the ray that is nearest to the centre, so that far cameras lose no digits.
@@ -56,39 +104,8 @@ RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& op
 
 void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
               const MarchOptions& options, RaySamples& out) {
-  const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
-  const float step = options.StepLength();
-  const auto [near_distance, far_distance] = RangeOfRay(rays, r, options);
-  const float nearest = -origin.dot(direction);  // where the ray passes the centre
-  float t = near_distance;
-  float fraction = 1.0f - rays.jitter[r];
-  while (t < far_distance) {
-    const float speed = Speed(origin + t * direction, direction);
-    // Far out along the ray the contracted point hardly moves; without a bound one step would be
-    // longer than everything before it.
-    const float longest = std::min(std::max(t, 1.0f), far_distance - t);
-    const float dt = std::min(fraction * step / std::max(speed, kSlowest), longest);
-    fraction = 1.0f;
-    const float middle = t + 0.5f * dt;
-    const Eigen::Vector3f x_in_cube = InCube(origin + middle * direction);
-    if (grid.Occupied(x_in_cube)) {
-      out.position.insert(out.position.end(), {x_in_cube[0], x_in_cube[1], x_in_cube[2]});
-      out.t.push_back(middle);
-      out.dt.push_back(dt);
-    } else if (const float free = grid.FreeRadius(x_in_cube); free > 2 * step) {
-      // Over what is empty in one go: as far as the fastest speed on the way allows, which is that
-      // of its innermost point.
-      const auto reach = [&](float at) {
-        return free / std::max(FastestSpeed((origin + at * direction).norm()), kSlowest);
-      };
-      const float guess = middle + reach(middle);
-      const float innermost = std::clamp(nearest, middle, guess);
-      t = std::max(t + dt, middle + reach(innermost));
-      continue;
-    }
-    // Even where a step is too short for the precision of t, the ray must move on.
-    t = std::max(t + dt, std::nextafter(t, far_distance));
-  }
+  if (options.IsUnbounded()) return March<Contracted>(rays, r, grid, options, out);
+  March<Ball>(rays, r, grid, options, out);
 }
 
 void MarchOptions::Check() const {

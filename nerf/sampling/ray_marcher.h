@@ -4,10 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "nerf/left_out.h"
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/sampling/rays.h"
 
 namespace nerf {
+
+struct UnboundedOptions;  // nerf/effects/unbounded.h, of which nothing but the name is known here
 
 struct MarchOptions {
   // What places samples: the "occupancy" grid, a "proposal" field, or by "auto" the grid for
@@ -22,6 +25,7 @@ struct MarchOptions {
   bool unbounded = true;
 
   void Check() const;
+  bool IsUnbounded() const { return !kLeftOut<UnboundedOptions> && unbounded; }
   float StepLength() const { return 1.0f / static_cast<float>(steps_per_unit); }
 };
 

@@ -1,40 +1,58 @@
 #include "nerf/train/held_out.h"
 
 #include <algorithm>
-#include <utility>
+
+#include "nerf/data/camera.h"
 
 namespace nerf {
 namespace {
 
-constexpr std::size_t kEnough = 4, kOneIn = 8;
-
-template <class T>
-void Remove(std::size_t place, std::vector<T>& from) {
-  if (!from.empty()) from.erase(from.begin() + static_cast<std::ptrdiff_t>(place));
-}
+constexpr std::size_t kEnough = 8, kOneIn = 4;
 
 }  // namespace
 
-HeldOut::HeldOut(Dataset& data, SceneFacts scene) : data_(data), scene_(std::move(scene)) {
-  const std::size_t all = data.train.size(), there = data.validation.size();
-  const std::size_t count = there >= kEnough ? 0 : std::min(kEnough - there, all / kOneIn);
-  for (std::size_t k = 0; k < count; ++k) places_.push_back((2 * k + 1) * all / (2 * count));
-  // From the back, so that the places before stay what they are.
-  for (auto place = places_.rbegin(); place != places_.rend(); ++place) {
-    data.validation.push_back(std::move(data.train[*place]));
-    Remove(*place, data.train);
-    Remove(*place, scene_.photographs);
-    Remove(*place, scene_.places);
-    Remove(*place, scene_.exposure_stops);
+View ColumnsOf(const View& view, int left, int right) {
+  const std::int64_t all = view.camera.width, width = right - left;
+  // Where a pixel of the whole stands in the part, if it does.
+  const auto place = [&](std::int64_t pixel) {
+    const std::int64_t column = pixel % all - left;
+    return column >= 0 && column < width ? pixel / all * width + column : -1;
+  };
+  View part;
+  part.name = view.name;
+  part.camera = ColumnsOf(view.camera, left, right - left);
+  part.normalized_from_camera = view.normalized_from_camera;
+  part.lens = view.lens;
+  part.seed = view.seed;
+  for (std::int64_t k = 0; k < view.Held(); ++k) {
+    const std::int64_t pixel = place(view.PixelOf(k));
+    if (pixel < 0) continue;
+    part.whole.push_back(static_cast<std::uint32_t>(pixel));
+    part.rgba.insert(part.rgba.end(), &view.rgba[4 * k], &view.rgba[4 * k] + 4);
+  }
+  for (const SeenPoint& point : view.points) {
+    if (place(point.pixel) >= 0) part.points.push_back({place(point.pixel), point.distance});
+  }
+  return part;
+}
+
+HeldOutHalves::HeldOutHalves(Dataset& data) : data_(data) {
+  validation_.swap(data.validation);
+  const std::size_t all = data.train.size(), count = std::min(kEnough, all / kOneIn);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t place = (2 * k + 1) * all / (2 * count);
+    View& view = data.train[place];
+    const int width = view.camera.width;
+    View left = ColumnsOf(view, 0, width / 2), right = ColumnsOf(view, width / 2, width);
+    if (left.Held() == 0 || right.Held() == 0) continue;
+    data.validation.push_back(std::move(right));
+    wholes_.emplace_back(place, std::exchange(view, std::move(left)));
   }
 }
 
-HeldOut::~HeldOut() {
-  for (const std::size_t place : places_) {
-    data_.train.insert(data_.train.begin() + static_cast<std::ptrdiff_t>(place),
-                       std::move(data_.validation.back()));
-    data_.validation.pop_back();
-  }
+HeldOutHalves::~HeldOutHalves() {
+  for (auto& [place, whole] : wholes_) data_.train[place] = std::move(whole);
+  data_.validation = std::move(validation_);
 }
 
 }  // namespace nerf

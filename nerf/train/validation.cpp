@@ -43,6 +43,7 @@ void FitToPhotographs(RenderOutput& out, const TargetBatch& truth, ColorEncoding
 
 Validation::Validation(const std::vector<View>& views, std::uint64_t seed) {
   if (views.empty()) return;
+  for (const View& view : views) names_.push_back(view.name);
   batch_ = PixelSampler(views).Sample(kRays, seed, 0);
   std::ranges::fill(batch_.rays.jitter, 0.5f);
   for (const std::int64_t photograph : batch_.photograph) {
@@ -53,22 +54,32 @@ Validation::Validation(const std::vector<View>& views, std::uint64_t seed) {
   }
 }
 
-// As refined focal lengths have them; the poses of these photographs are as they were given.
+// As the model has refined lenses, and poses where it knows the photograph.
 RayBatch Validation::Rays(const Model& model) const {
   if (!model.poses) return batch_.rays;
   const torch::NoGradGuard no_grad;
   const std::int64_t count = batch_.rays.Size();
   const torch::Tensor of_lens = model.poses->LogFocals();
-  std::vector<float> log_f;
-  for (const std::int64_t lens : lens_) {
-    log_f.push_back(lens < of_lens.size(0) ? of_lens[lens].item<float>() : 0.0f);
+  const std::vector<std::string>& trained = model.scene.photographs;
+  std::vector<float> log_f, known;
+  std::vector<std::int64_t> place;  // of the photograph among those trained on
+  for (std::int64_t r = 0; r < count; ++r) {
+    log_f.push_back(lens_[r] < of_lens.size(0) ? of_lens[lens_[r]].item<float>() : 0.0f);
+    const auto found = std::ranges::find(trained, names_[batch_.photograph[r]]);
+    known.push_back(found == trained.end() ? 0.0f : 1.0f);
+    place.push_back(found == trained.end() ? 0 : found - trained.begin());
   }
-  const auto rows = [&](const std::vector<float>& values) {
-    return TensorOf(values, {count, 3}, torch::kFloat);
+  const auto rows = [&](const std::vector<float>& values, std::int64_t columns) {
+    return TensorOf(values, {count, columns}, torch::kFloat);
   };
-  return Poses::WithMoved(batch_.rays, {rows(batch_.rays.origin),
-                                        Poses::Zoomed(rows(batch_.rays.direction), rows(axis_),
-                                                      TensorOf(log_f, {count, 1}, torch::kFloat))});
+  const torch::Tensor origin = rows(batch_.rays.origin, 3);
+  const torch::Tensor direction = rows(batch_.rays.direction, 3);
+  const Poses::Moved refined =
+      model.poses->forward(origin, direction, TensorOf(place, {count}, torch::kLong));
+  const torch::Tensor zoomed = Poses::Zoomed(direction, rows(axis_, 3), rows(log_f, 1));
+  const torch::Tensor is_known = rows(known, 1) > 0.5;
+  return Poses::WithMoved(batch_.rays, {torch::where(is_known, refined.origin, origin),
+                                        torch::where(is_known, refined.direction, zoomed)});
 }
 
 double Validation::Psnr(const Model& model, bool fit_exposure) const {

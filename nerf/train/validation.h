@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "nerf/data/dataset.h"
@@ -19,7 +20,8 @@ class Validation {
 
   bool Empty() const { return batch_.rays.Size() == 0; }
 
-  // dB, through the lenses as the model has refined them. With fit_exposure each photograph is
+  // dB, through the lenses as the model has refined them, and at the refined poses of photographs
+  // that it was trained on a part of. With fit_exposure each photograph is
   // rendered at its own exposure, which nobody else knows and which is fitted to it: so are models
   // that simulate exposures measured, and those that are to be compared with them.
   double Psnr(const Model& model, bool fit_exposure) const;
@@ -28,6 +30,7 @@ class Validation {
   RayBatch Rays(const Model& model) const;
 
   TargetBatch batch_;
+  std::vector<std::string> names_;  // of the views
   std::vector<float> axis_;         // [R,3] of the rays' cameras
   std::vector<std::int64_t> lens_;  // [R]
 };

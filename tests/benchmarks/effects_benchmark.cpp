@@ -5,6 +5,9 @@
 #include <string>
 
 #include "nerf/config.h"
+#include "nerf/data/camera.h"
+#include "nerf/data/dataset.h"
+#include "nerf/data/pixel_sampler.h"
 #include "nerf/parallel.h"
 #include "nerf/train/effect_trial.h"
 #include "nerf/train/engine.h"
@@ -13,46 +16,40 @@
 namespace nerf {
 namespace {
 
-constexpr std::int64_t kRays = 1024, kPhotographs = 16;
+constexpr std::int64_t kRays = 1024;
+constexpr int kPhotographs = 16, kEdge = 64;
 
-// Rays from around the scene, of photographs of one grey.
-TargetBatch Rays() {
-  TargetBatch batch;
-  batch.rays.Resize(kRays);
-  batch.rgb.assign(3 * kRays, 0.4f);
-  for (std::int64_t r = 0; r < kRays; ++r) {
-    const auto x = static_cast<float>(r);
-    const Eigen::Vector3f origin =
-        1.5f * Eigen::Vector3f(std::sin(x), std::cos(2.3f * x), std::sin(0.7f * x)).normalized();
-    const Eigen::Vector3f aim(0.5f * std::sin(3 * x), 0.5f * std::sin(5 * x), 0.0f);
-    const Eigen::Vector3f d = (aim - origin).normalized();
-    for (int c = 0; c < 3; ++c) {
-      batch.rays.origin[3 * r + c] = origin[c];
-      batch.rays.direction[3 * r + c] = d[c];
-      batch.rays.background[3 * r + c] = 0.5f;
-    }
-    batch.rays.jitter[r] = 0.5f;
-    batch.rays.spread.push_back(0.002f);
-    batch.photograph.push_back(r % kPhotographs);
+// Photographs of one grey, from around the scene.
+Dataset Photographs() {
+  Dataset data;
+  for (int i = 0; i < kPhotographs; ++i) {
+    View view;
+    view.name = std::to_string(i);
+    view.camera = PinholeFromFov(kEdge, kEdge, 1);
+    const Eigen::Vector3d centre(2 * std::sin(i), 2 * std::cos(i), 0.1 * i);
+    view.normalized_from_camera.setIdentity();
+    view.normalized_from_camera.rotate(
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -centre));
+    view.normalized_from_camera.translation() = centre;
+    view.rgba.assign(4 * kEdge * kEdge, Eigen::half(0.4f));
+    for (int pixel = 0; pixel < kEdge * kEdge; ++pixel) view.rgba[4 * pixel + 3] = Eigen::half(1);
+    data.train.push_back(view);
   }
-  return batch;
+  return data;
 }
 
-// Items are rays; MB are the parameters with their gradients and the optimiser's two moments.
+// Pixels are drawn, and gradients are taken. Items are rays; MB are the parameters with their
+// gradients and the optimiser's two moments.
 void Step(benchmark::State& state, const std::string& effect, const std::string& setting) {
   at::set_num_threads(NumThreads());
-  SceneFacts scene;
-  for (int i = 0; i < kPhotographs; ++i) {
-    scene.photographs.push_back(std::to_string(i));
-    CameraPlace place;
-    place.centre = {2 * std::sin(i), 2 * std::cos(i), 0.1 * i};
-    place.axis = -place.centre.normalized();
-    scene.places.push_back(place);
+  const Dataset data = Photographs();
+  const Model model = MakeModel(WithEffect(Config(), effect, setting), FactsOf(data, {}));
+  const PixelSampler sampler(data.train);
+  std::uint64_t step = 0;
+  for (auto _ : state) {
+    const TargetBatch batch = sampler.Sample(kRays, 1, step++);
+    benchmark::DoNotOptimize(model.engine->AccumulateGradients(batch).loss);
   }
-  const Config config = WithEffect(Config(), effect, setting);
-  const Model model = MakeModel(config, scene);
-  const TargetBatch batch = Rays();
-  for (auto _ : state) benchmark::DoNotOptimize(model.engine->AccumulateGradients(batch).loss);
   state.SetItemsProcessed(state.iterations() * kRays);
   state.counters["MB"] = MegabytesOf(model);
 }

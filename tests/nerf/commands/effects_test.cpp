@@ -143,6 +143,29 @@ TEST_F(EffectsCommands, WhatTheEvidenceLeavesOpenIsTried) {
   EXPECT_TRUE(seen);
 }
 
+// Poses and the points that depth learns from, which trials alone make use of.
+TEST_F(EffectsCommands, PosesAndDepthInBetweenAreTried) {
+  const auto made = RunNerf("sample " + Path("wrong") +
+                            " --calls-for poses --views 18 --width 96 --height 72 --samples 2");
+  ASSERT_EQ(made.exit_status, 0) << made.output;
+  const auto run = RunNerf("train " + Path("wrong/truth/sparse") + " -o " + Path("wrong/run") +
+                           " --threads 2 --effects -view --set data.test_every=0 "
+                           "--set train.validate_every=20 --target-psnr 1 "
+                           "--set encoding.log2_table_size=12 --set field.hidden_width=16");
+  ASSERT_EQ(run.exit_status, 0) << run.output;
+  const nlohmann::json effects = Json("wrong/run/config.json").at("effects");
+  int tried = 0;
+  const nlohmann::json verdicts = Json("wrong/run/effects.json").at("verdicts");
+  for (const auto& verdict : verdicts) {
+    const std::string evidence = verdict.at("evidence");
+    if (evidence.find("tried: ") == std::string::npos) continue;
+    ++tried;
+    EXPECT_EQ(verdict.at("on"), !effects.at(verdict.at("effect")).is_null());
+  }
+  EXPECT_EQ(tried, 2) << run.output;
+  EXPECT_EQ(fs::exists(Path("wrong/run/sparse")), !effects.at("depth").is_null());
+}
+
 TEST_F(EffectsCommands, RefinedPosesAreToldAndWritten) {
   const auto run = RunNerf(Train("exposure", "refined", "--effects +poses"));
   ASSERT_EQ(run.exit_status, 0) << run.output;

@@ -154,6 +154,18 @@ TEST(RowsOf, SeeWhatTheseRowsOfTheImageSee) {
   }
 }
 
+TEST(ColumnsOf, SeeWhatTheseColumnsOfTheImageSee) {
+  for (const Lens& lens : LensesThatFillTheirImage()) {
+    const Camera columns = ColumnsOf(lens.camera, 20, 30);
+    EXPECT_EQ(columns.width, 30);
+    EXPECT_EQ(columns.height, lens.camera.height);
+    const auto whole = DirectionFromPixel(lens.camera, {30.5, 47.5});
+    const auto part = DirectionFromPixel(columns, {10.5, 47.5});
+    ASSERT_TRUE(whole && part) << lens.name;
+    EXPECT_LT((*whole - *part).norm(), 1e-12) << lens.name;
+  }
+}
+
 TEST(CameraByHand, Pinholes) {
   ExpectPixel(Make(CameraModel::kSimplePinhole, {100, 50, 40}), 100, 65);
   ExpectPixel(Make(CameraModel::kPinhole, {100, 200, 50, 40}), 100, 90);

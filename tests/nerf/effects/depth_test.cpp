@@ -27,7 +27,7 @@ struct FewPhotographs {
   FewPhotographs() {
     sample::SampleOptions options;
     options.occasion = sample::Occasion::kDepth;
-    options.views = 9;
+    options.views = 10;
     options.width = 96;
     options.height = 72;
     options.samples_per_pixel = 4;
