@@ -51,10 +51,10 @@ void PacketPlacement::PackRay(const RayBatch& rays, std::int64_t r, std::int64_t
   const std::int64_t each = samples_;
   RaySamples& s = tile.samples;
   tile.of_ray[k] = {k * each, (k + 1) * each};
-  PackIntervalsOfRay(rays, r, std::span(tile.proposal.edges).subspan(asked * (each + 1), each + 1),
-                     std::span(s.position).subspan(3 * k * each, 3 * each),
-                     std::span(s.t).subspan(k * each, each),
-                     std::span(s.dt).subspan(k * each, each));
+  PackIntervalsOfRay(
+      rays, r, march_, std::span(tile.proposal.edges).subspan(asked * (each + 1), each + 1),
+      std::span(s.position).subspan(3 * k * each, 3 * each), std::span(s.t).subspan(k * each, each),
+      std::span(s.dt).subspan(k * each, each));
 }
 
 void PacketPlacement::Place(const RayBatch& rays, std::int64_t first, std::int64_t last,

@@ -55,8 +55,8 @@ std::vector<std::int64_t> EvenBegins(std::int64_t rays, std::int64_t samples) {
 
 }  // namespace
 
-PackedSamples PackIntervals(const RayBatch& rays, const std::vector<float>& edges,
-                            std::int64_t intervals) {
+PackedSamples PackIntervals(const RayBatch& rays, const MarchOptions& march,
+                            const std::vector<float>& edges, std::int64_t intervals) {
   const std::int64_t count = rays.Size();
   PackedSamples out;
   out.ray_begin = EvenBegins(count, intervals);
@@ -66,7 +66,8 @@ PackedSamples PackIntervals(const RayBatch& rays, const std::vector<float>& edge
   out.dt.resize(count * intervals);
   ParallelFor(count, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
-      PackIntervalsOfRay(rays, r, std::span(edges).subspan(r * (intervals + 1), intervals + 1),
+      PackIntervalsOfRay(rays, r, march,
+                         std::span(edges).subspan(r * (intervals + 1), intervals + 1),
                          std::span(out.position).subspan(3 * r * intervals, 3 * intervals),
                          std::span(out.t).subspan(r * intervals, intervals),
                          std::span(out.dt).subspan(r * intervals, intervals));
@@ -87,7 +88,7 @@ ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
                      std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1));
     }
   });
-  const PackedSamples asked = PackIntervals(rays, out.coarse_edges, coarse);
+  const PackedSamples asked = PackIntervals(rays, march, out.coarse_edges, coarse);
   const torch::Dtype dtype = proposal.Hash().Table().scalar_type();
   // Clones: the way back reads them after `asked` is gone.
   const auto own = [](const auto& values, at::IntArrayRef shape, torch::Dtype type) {
@@ -108,7 +109,7 @@ ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
                    std::span(out.edges).subspan(r * (fine + 1), fine + 1));
     }
   });
-  out.samples = PackIntervals(rays, out.edges, fine);
+  out.samples = PackIntervals(rays, march, out.edges, fine);
   return out;
 }
 

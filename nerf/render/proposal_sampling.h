@@ -20,8 +20,8 @@ struct ProposedSamples {
 
 // Intervals as packed samples in their middles. Every ray has the same number of intervals.
 //   edges  [R, intervals + 1]
-PackedSamples PackIntervals(const RayBatch& rays, const std::vector<float>& edges,
-                            std::int64_t intervals);
+PackedSamples PackIntervals(const RayBatch& rays, const MarchOptions& march,
+                            const std::vector<float>& edges, std::int64_t intervals);
 
 // Asks the proposal at intervals of equal length in contracted space, and cuts each ray anew by its
 // weights. The places of the samples carry no gradient.

@@ -35,7 +35,7 @@ void TileProposal::Cut(const RayBatch& rays, std::int64_t first, std::int64_t la
   for (std::int64_t k = 0; k < count; ++k) {
     tile.ray_begin[k + 1] = (k + 1) * coarse;
     EqualIntervals(rays, first + k, march_, coarse_edges(k));
-    PackIntervalsOfRay(rays, first + k, coarse_edges(k),
+    PackIntervalsOfRay(rays, first + k, march_, coarse_edges(k),
                        std::span(tile.position).subspan(3 * k * coarse, 3 * coarse),
                        std::span(tile.t).subspan(k * coarse, coarse),
                        std::span(tile.dt).subspan(k * coarse, coarse));
@@ -60,7 +60,8 @@ void TileProposal::Propose(const RayBatch& rays, std::int64_t first, std::int64_
   samples.t.resize(count * fine);
   samples.dt.resize(count * fine);
   for (std::int64_t k = 0; k < count; ++k) {
-    PackIntervalsOfRay(rays, first + k, std::span(tile.edges).subspan(k * (fine + 1), fine + 1),
+    PackIntervalsOfRay(rays, first + k, march_,
+                       std::span(tile.edges).subspan(k * (fine + 1), fine + 1),
                        std::span(samples.position).subspan(3 * k * fine, 3 * fine),
                        std::span(samples.t).subspan(k * fine, fine),
                        std::span(samples.dt).subspan(k * fine, fine));

@@ -97,16 +97,16 @@ void CutByWeights(std::span<const float> edges, std::span<const float> weights, 
   ResampleIntervals(edges, std::span(tempered).first(weights.size()), padding, jitter, out);
 }
 
-void PackIntervalsOfRay(const RayBatch& rays, std::int64_t r, std::span<const float> edges,
-                        std::span<float> position, std::span<float> t, std::span<float> dt) {
+void PackIntervalsOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& options,
+                        std::span<const float> edges, std::span<float> position, std::span<float> t,
+                        std::span<float> dt) {
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
+  const bool contracted = options.IsUnbounded();  // in the unit ball nothing is
   for (std::size_t i = 0; i < t.size(); ++i) {
     t[i] = 0.5f * (edges[i] + edges[i + 1]);
     dt[i] = edges[i + 1] - edges[i];
     const Eigen::Vector3f x = origin + t[i] * direction;
-    // In the ball in which rays without the effect end the contraction is the identity.
-    const Eigen::Vector3f x_in_cube =
-        UnitCubeFromContracted(kLeftOut<UnboundedOptions> ? x : Contract(x));
+    const Eigen::Vector3f x_in_cube = UnitCubeFromContracted(contracted ? Contract(x) : x);
     std::copy_n(x_in_cube.data(), 3, &position[3 * i]);
   }
 }

@@ -38,7 +38,8 @@ void CutByWeights(std::span<const float> edges, std::span<const float> weights, 
 
 // A ray's intervals as samples in their middles.
 //   edges  [N+1]    position  [3N] contracted, in the unit cube    t, dt  [N]
-void PackIntervalsOfRay(const RayBatch& rays, std::int64_t r, std::span<const float> edges,
-                        std::span<float> position, std::span<float> t, std::span<float> dt);
+void PackIntervalsOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& options,
+                        std::span<const float> edges, std::span<float> position, std::span<float> t,
+                        std::span<float> dt);
 
 }  // namespace nerf

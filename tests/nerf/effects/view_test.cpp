@@ -44,7 +44,9 @@ TEST(ViewDependence, WithoutWeightGivesTheDiffuseImage) {
     const std::vector<float> a = (by_direction.*engine)->Render(by_direction.batch.rays).rgb;
     const std::vector<float> b = (diffuse.*engine)->Render(diffuse.batch.rays).rgb;
     ASSERT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-6);  // sums of zeros
+    // Exactly; but OpenBLAS sums a longer row, zeros and all, in another order.
+    const float bound = engine == &test::TwoEngines::fused ? 0.0f : 1e-6f;
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], bound);
   }
 }
 
