@@ -25,8 +25,8 @@ struct DepthOptions {
   void Check() const;
 };
 
-// Gives each view that is trained on the points that it sees, and no others: those that three photographs have
-// seen within two pixels, in the pixel to which its camera projects them.
+// Gives each view that is trained on the points that it sees, and no others: those that three
+// photographs have seen within two pixels, in the pixel to which its camera projects them.
 //   sparse  with points and tracks; its images are the views by name
 void AddSeenPoints(const sfm::PosedImages& sparse,
                    const sfm::SceneNormalization& normalized_from_world, Dataset& data);
