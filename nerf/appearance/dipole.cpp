@@ -8,7 +8,7 @@
 namespace nerf::appearance {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Mean reflectance of the boundary for diffuse light from within.
 // Source: Groenhuis et al. 1983, by Jensen et al. 2001.
@@ -47,7 +47,7 @@ Color Dipole::DiffuseReflectance(double r) const {
     const Color d = d2.sqrt();
     return z * (1 + sigma_tr_ * d) * (-sigma_tr_ * d).exp() / (d2 * d);
   };
-  return albedo_ / (4 * kPi) * (source(z_real_) + source(z_virtual_));
+  return albedo_ / (4 * pi) * (source(z_real_) + source(z_virtual_));
 }
 
 Color Dipole::TotalDiffuseReflectance() const {

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 void CheckRadiance(const Image& image, const std::string& name) {
   if (image.width != 2 * image.height || image.height < 1) {
@@ -78,20 +78,20 @@ Color EnvironmentMap::At(int x, int y) const {
 }
 
 Vector3d EnvironmentMap::Direction(int x, int y) const {
-  const double theta = kPi * (y + 0.5) / height();
-  const double phi = 2 * kPi * ((x + 0.5) / width() - 0.5);
+  const double theta = pi * (y + 0.5) / height();
+  const double phi = 2 * pi * ((x + 0.5) / width() - 0.5);
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
 double EnvironmentMap::SolidAngle(int y) const {
-  return 2 * kPi / width() * (std::cos(kPi * y / height()) - std::cos(kPi * (y + 1) / height()));
+  return 2 * pi / width() * (std::cos(pi * y / height()) - std::cos(pi * (y + 1) / height()));
 }
 
 EnvironmentMap::Texel EnvironmentMap::TexelOf(const Vector3d& d) const {
   const double theta = std::atan2(std::hypot(d.x(), d.z()), d.y());
-  const double turn = std::atan2(d.x(), -d.z()) / (2 * kPi) + 0.5;
+  const double turn = std::atan2(d.x(), -d.z()) / (2 * pi) + 0.5;
   return {std::clamp(static_cast<int>(turn * width()), 0, width() - 1),
-          std::clamp(static_cast<int>(theta / kPi * height()), 0, height() - 1)};
+          std::clamp(static_cast<int>(theta / pi * height()), 0, height() - 1)};
 }
 
 Color EnvironmentMap::Radiance(const Vector3d& direction) const {
@@ -106,11 +106,11 @@ std::optional<EnvironmentMap::Sample> EnvironmentMap::Draw(const Eigen::Array2d&
   const auto stride = static_cast<std::size_t>(width()) + 1;
   const Place column = Find(&columns_[static_cast<std::size_t>(row.bin) * stride], width(), u.x());
   // Uniform over the patch: in phi and in cos(theta).
-  const double above = std::cos(kPi * row.bin / height());
-  const double below = std::cos(kPi * (row.bin + 1) / height());
+  const double above = std::cos(pi * row.bin / height());
+  const double below = std::cos(pi * (row.bin + 1) / height());
   const double cos_theta = above + (below - above) * row.within;
   const double sin_theta = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
-  const double phi = 2 * kPi * ((column.bin + column.within) / width() - 0.5);
+  const double phi = 2 * pi * ((column.bin + column.within) / width() - 0.5);
   const Color radiance = At(column.bin, row.bin);
   return Sample{{sin_theta * std::sin(phi), cos_theta, -sin_theta * std::cos(phi)},
                 radiance,

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kSameAngle = 1e-3;  // radians
 constexpr double kReach = 2;         // of a light, in typical distances of neighbours
 constexpr int kPixelsOfALight = 100;
@@ -23,7 +23,7 @@ constexpr int kPixelsOfALight = 100;
 double Polar(const Vector3d& d) { return std::atan2(std::hypot(d.x(), d.z()), d.y()); }
 double Azimuth(const Vector3d& d) {
   const double phi = std::atan2(d.x(), -d.z());
-  return phi < 0 ? phi + 2 * kPi : phi;
+  return phi < 0 ? phi + 2 * pi : phi;
 }
 
 // Lights in rows of equal polar angle, spread evenly in azimuth and alike in each row.
@@ -47,7 +47,7 @@ std::optional<Grid> FindGrid(std::span<const DirectionalLight> lights) {
       return Azimuth(lights[static_cast<std::size_t>(i)].to_light);
     };
     std::ranges::sort(row, {}, azimuth);
-    const double step = 2 * kPi / static_cast<double>(row.size());
+    const double step = 2 * pi / static_cast<double>(row.size());
     const double first = azimuth(row.front());
     if (grid.theta.empty()) grid.phase = first;
     if (row.size() < 3 || row.size() != rows.begin()->second.size()) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<Grid> FindGrid(std::span<const DirectionalLight> lights) {
   if (grid.theta.size() < 2) return std::nullopt;
   // Rows at even distances with half a step to the poles, as pixels have: else there is no sin
   // term.
-  const double step = kPi / static_cast<double>(grid.theta.size());
+  const double step = pi / static_cast<double>(grid.theta.size());
   for (std::size_t r = 0; r < grid.theta.size(); ++r) {
     if (std::abs(grid.theta[r] - step * (static_cast<double>(r) + 0.5)) > kSameAngle) {
       return std::nullopt;
@@ -73,10 +73,10 @@ std::optional<Grid> FindGrid(std::span<const DirectionalLight> lights) {
 
 int LightOnGrid(const Grid& grid, const Vector3d& d) {
   const auto rows = static_cast<int>(grid.theta.size());
-  const int row = std::clamp(static_cast<int>(Polar(d) / kPi * rows), 0, rows - 1);
+  const int row = std::clamp(static_cast<int>(Polar(d) / pi * rows), 0, rows - 1);
   const auto& lights = grid.lights[static_cast<std::size_t>(row)];
   const auto columns = static_cast<int>(lights.size());
-  const double place = (Azimuth(d) - grid.phase) / (2 * kPi) * columns;
+  const double place = (Azimuth(d) - grid.phase) / (2 * pi) * columns;
   const int column = (static_cast<int>(std::floor(place + 0.5)) % columns + columns) % columns;
   return lights[static_cast<std::size_t>(column)];
 }
@@ -98,7 +98,7 @@ float CosineOfReach(const Eigen::Matrix<float, Eigen::Dynamic, 3>& directions) {
   const auto middle = nearest.begin() + count / 2;
   std::ranges::nth_element(nearest, middle);
   const double reach = kReach * std::acos(std::clamp(static_cast<double>(*middle), -1.0, 1.0));
-  return static_cast<float>(std::cos(std::min(reach, kPi)));
+  return static_cast<float>(std::cos(std::min(reach, pi)));
 }
 
 }  // namespace
@@ -168,7 +168,7 @@ std::vector<Color> LightVoronoi::Sums(const EnvironmentMap& map, double degrees)
   const int turn = static_cast<int>(std::lround(degrees / 360 * width)) % width;
   for (int y = 0; y < height_; ++y) {
     const double solid_angle =
-        2 * kPi / width * (std::cos(kPi * y / height_) - std::cos(kPi * (y + 1) / height_));
+        2 * pi / width * (std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_));
     for (int x = 0; x < width; ++x) {
       // What stands at x came from `turn` pixels further right: azimuth grows to the right, which
       // seen from above is clockwise.

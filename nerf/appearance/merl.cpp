@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 static_assert(std::endian::native == std::endian::little, "MERL files are little endian");
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kScale[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};  // of the stored numbers
 constexpr std::size_t kHeader = 3 * sizeof(std::int32_t);
 
@@ -43,7 +43,7 @@ std::size_t BinIndex(int theta_h, int theta_d, int phi_d) {
 // theta_h at a place on the axis of bins, counted in bins.
 double ThetaHAt(double place) {
   const double root = place / MerlBrdf::kThetaH;
-  return root * root * kPi / 2;
+  return root * root * pi / 2;
 }
 
 // The two bins whose middles lie around a place, and the weight of the upper one.
@@ -70,8 +70,8 @@ RusinkiewiczAngles AnglesOf(const Vector3d& w_o, const Vector3d& w_i) {
   const double phi_h = std::atan2(h.y(), h.x());
   const Vector3d d = RotatedAboutY(RotatedAboutZ(w_i, -phi_h), -theta_h);
   double phi_d = std::atan2(d.y(), d.x());
-  if (phi_d < 0) phi_d += kPi;
-  if (phi_d >= kPi) phi_d -= kPi;
+  if (phi_d < 0) phi_d += pi;
+  if (phi_d >= pi) phi_d -= pi;
   return {theta_h, std::atan2(std::hypot(d.x(), d.y()), d.z()), phi_d};
 }
 
@@ -139,8 +139,8 @@ MerlBrdf MerlBrdf::Measure(const Brdf& brdf) {
   for (int i = 0; i < kThetaH; ++i) {
     for (int j = 0; j < kThetaD; ++j) {
       for (int k = 0; k < kPhiD; ++k) {
-        const RusinkiewiczAngles angles{ThetaHAt(i + 0.5), (j + 0.5) * kPi / 2 / kThetaD,
-                                        (k + 0.5) * kPi / kPhiD};
+        const RusinkiewiczAngles angles{ThetaHAt(i + 0.5), (j + 0.5) * pi / 2 / kThetaD,
+                                        (k + 0.5) * pi / kPhiD};
         const auto [w_o, w_i] = DirectionsOf(angles);
         const bool above = w_o.z() > 0 && w_i.z() > 0;
         bins[BinIndex(i, j, k)] = above ? brdf.Eval(w_o, w_i) : Color::Constant(-1);
@@ -168,9 +168,9 @@ void MerlBrdf::Write(const std::filesystem::path& file) const {
 Color MerlBrdf::Eval(const Vector3d& w_o, const Vector3d& w_i) const {
   if (w_o.z() <= 0 || w_i.z() <= 0) return Color::Zero();
   const RusinkiewiczAngles angles = AnglesOf(w_o, w_i);
-  const Between h = Clamped(std::sqrt(angles.theta_h / (kPi / 2)) * kThetaH, kThetaH);
-  const Between d = Clamped(angles.theta_d / (kPi / 2) * kThetaD, kThetaD);
-  const Between phi = Periodic(angles.phi_d / kPi * kPhiD, kPhiD);
+  const Between h = Clamped(std::sqrt(angles.theta_h / (pi / 2)) * kThetaH, kThetaH);
+  const Between d = Clamped(angles.theta_d / (pi / 2) * kThetaD, kThetaD);
+  const Between phi = Periodic(angles.phi_d / pi * kPhiD, kPhiD);
   Color sum = Color::Zero();
   double weights = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -190,13 +190,12 @@ Color MerlBrdf::Eval(const Vector3d& w_o, const Vector3d& w_i) const {
 
 double MerlBrdf::HalfVectorDensity(const Vector3d& h) const {
   const double theta = std::atan2(std::hypot(h.x(), h.y()), h.z());
-  const int i =
-      std::clamp(static_cast<int>(std::sqrt(theta / (kPi / 2)) * kThetaH), 0, kThetaH - 1);
+  const int i = std::clamp(static_cast<int>(std::sqrt(theta / (pi / 2)) * kThetaH), 0, kThetaH - 1);
   const double begin = std::sin(ThetaHAt(i));
   const double end = std::sin(ThetaHAt(i + 1));
   const auto* mass = &cumulative_[static_cast<std::size_t>(i)];
   // Within a ring sin^2 is uniform, which is density cos(theta) over solid angle.
-  return (mass[1] - mass[0]) * h.z() / (kPi * (end * end - begin * begin));
+  return (mass[1] - mass[0]) * h.z() / (pi * (end * end - begin * begin));
 }
 
 std::optional<BrdfSample> MerlBrdf::Sample(const Vector3d& w_o, const Eigen::Array3d& u) const {
@@ -212,7 +211,7 @@ std::optional<BrdfSample> MerlBrdf::Sample(const Vector3d& w_o, const Eigen::Arr
     const double begin = std::pow(std::sin(ThetaHAt(i)), 2);
     const double end = std::pow(std::sin(ThetaHAt(i + 1)), 2);
     const double sin2 = begin + (end - begin) * share;
-    const double phi = 2 * kPi * u.y();
+    const double phi = 2 * pi * u.y();
     const Vector3d h(std::sqrt(sin2) * std::cos(phi), std::sqrt(sin2) * std::sin(phi),
                      std::sqrt(std::max(0.0, 1 - sin2)));
     w_i = 2 * w_o.dot(h) * h - w_o;
@@ -227,7 +226,7 @@ double MerlBrdf::Pdf(const Vector3d& w_o, const Vector3d& w_i) const {
   if (w_o.z() <= 0 || w_i.z() <= 0) return 0;
   const Vector3d h = HalfVector(w_o, w_i);
   const double highlight = HalfVectorDensity(h) / std::max(4 * w_o.dot(h), 1e-12);
-  return 0.5 * w_i.z() / kPi + 0.5 * highlight;
+  return 0.5 * w_i.z() / pi + 0.5 * highlight;
 }
 
 }  // namespace nerf::appearance

@@ -22,7 +22,7 @@ std::array<double, 9> SphericalHarmonics(const Vector3d& d) {
 }
 
 ShIrradiance::ShIrradiance(const EnvironmentMap& map) {
-  constexpr double kPi = std::numbers::pi;
+  using std::numbers::pi;
   coefficients_.fill(Color::Zero());
   for (int y = 0; y < map.height(); ++y) {
     for (int x = 0; x < map.width(); ++x) {
@@ -32,7 +32,7 @@ ShIrradiance::ShIrradiance(const EnvironmentMap& map) {
     }
   }
   for (std::size_t i = 0; i < 9; ++i) {
-    coefficients_[i] *= i == 0 ? kPi : i < 4 ? 2 * kPi / 3 : kPi / 4;
+    coefficients_[i] *= i == 0 ? pi : i < 4 ? 2 * pi / 3 : pi / 4;
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int kPoints = 1000;
 constexpr double kReach = 2.5;  // of a lookup, in distances between points
 
@@ -31,9 +31,9 @@ Color MeanOverOwnPatch(const Dipole& dipole, double rho) {
 
 SubsurfaceSphere::SubsurfaceSphere(const sample::Sphere& sphere, const Medium& medium)
     : sphere_(sphere), dipole_(medium), spread_(std::size_t{kPoints} * kPoints) {
-  const double patch = 4 * kPi * sphere.radius * sphere.radius / kPoints;
+  const double patch = 4 * pi * sphere.radius * sphere.radius / kPoints;
   for (int i = 0; i < kPoints; ++i) normals_.push_back(FibonacciDirection(i, kPoints));
-  const Color own = MeanOverOwnPatch(dipole_, std::sqrt(patch / kPi)) * patch;
+  const Color own = MeanOverOwnPatch(dipole_, std::sqrt(patch / pi)) * patch;
   ParallelForEach(kPoints, [&](std::int64_t to) {
     for (int from = 0; from < kPoints; ++from) {
       const double r = sphere_.radius * (normals_[static_cast<std::size_t>(to)] -
@@ -77,7 +77,7 @@ Color SubsurfaceSphere::UniformReflectance() const {
 Color SubsurfaceSphere::Exitance::At(const Vector3d& x_in_world) const {
   // A smooth mean of the points nearby: weights (1 - d^2 / reach^2)^2, with d^2 = 2 - 2 cos.
   const Vector3d normal = (x_in_world - sphere_->sphere_.center).normalized();
-  const double reach2 = kReach * kReach * 4 * kPi / kPoints;
+  const double reach2 = kReach * kReach * 4 * pi / kPoints;
   Color sum = Color::Zero();
   double weights = 0;
   for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -90,7 +90,7 @@ Color SubsurfaceSphere::Exitance::At(const Vector3d& x_in_world) const {
 }
 
 Color SubsurfaceSphere::Exitance::Radiance(const Vector3d& x_in_world, double n_dot_v) const {
-  return At(x_in_world) * (sphere_->dipole_.Transmittance(n_dot_v) / kPi);
+  return At(x_in_world) * (sphere_->dipole_.Transmittance(n_dot_v) / pi);
 }
 
 }  // namespace nerf::appearance

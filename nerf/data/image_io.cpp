@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kMaxPixels = 1'000'000'000;
 constexpr int kJpegQuality = 95;
-constexpr int kAlpha = 3;
+constexpr int kAlphaChannel = 3;
 
 std::string Lowercase(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -77,7 +77,7 @@ std::vector<int> PickChannels(const OIIO::ImageSpec& spec, const fs::path& path)
     picked = {named("R"), named("G"), named("B")};
   } else if (spec.nchannels == 1 || (spec.nchannels == 2 && alpha == 1)) {
     picked = {0, 0, 0};
-  } else if (spec.nchannels == 3 || (spec.nchannels == 4 && alpha == kAlpha)) {
+  } else if (spec.nchannels == 3 || (spec.nchannels == 4 && alpha == kAlphaChannel)) {
     picked = {0, 1, 2};
   } else {
     throw sfm::InputError("{}: {} channels without the names R, G, B; save it as RGB or RGBA",
@@ -140,8 +140,8 @@ void CheckFinite(const Image& image, const fs::path& path) {
 void MakeAlphaStraight(Image& image) {
   for (std::size_t i = 0; i < image.pixels.size(); i += image.channels) {
     float* pixel = &image.pixels[i];
-    if (pixel[kAlpha] <= 0) continue;
-    for (int c = 0; c < kAlpha; ++c) pixel[c] /= pixel[kAlpha];
+    if (pixel[kAlphaChannel] <= 0) continue;
+    for (int c = 0; c < kAlphaChannel; ++c) pixel[c] /= pixel[kAlphaChannel];
   }
 }
 
@@ -170,9 +170,9 @@ Image Decode(OIIO::ImageInput& input, const fs::path& path) {
   const auto encoding = IsLinear(input) ? ColorEncoding::kLinear : ColorEncoding::kSrgb;
   Image image = Gather(spec, ReadAllChannels(input, path), channels, encoding);
   CheckFinite(image, path);
-  if (image.channels > kAlpha) {
+  if (image.channels > kAlphaChannel) {
     if (spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0) MakeAlphaStraight(image);
-    for (std::size_t i = kAlpha; i < image.pixels.size(); i += image.channels) {
+    for (std::size_t i = kAlphaChannel; i < image.pixels.size(); i += image.channels) {
       image.pixels[i] = std::clamp(image.pixels[i], 0.0f, 1.0f);
     }
     CheckFinite(image, path);
@@ -221,10 +221,10 @@ void EncodeBytes(const fs::path& path, const fs::path& shown_path, const Image& 
 
 void EncodeRadiance(const fs::path& path, const fs::path& shown_path, const Image& image) {
   Image premultiplied = ToLinear(image);
-  if (image.channels > kAlpha) {
+  if (image.channels > kAlphaChannel) {
     for (std::size_t i = 0; i < premultiplied.pixels.size(); i += image.channels) {
       float* pixel = &premultiplied.pixels[i];
-      for (int c = 0; c < kAlpha; ++c) pixel[c] *= pixel[kAlpha];
+      for (int c = 0; c < kAlphaChannel; ++c) pixel[c] *= pixel[kAlphaChannel];
     }
   }
   OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeFloat);
@@ -270,7 +270,7 @@ void WriteImage(const fs::path& path, const Image& image) {
       EncodeBytes(file.path(), path, image);
       break;
     case FileFormat::kJpeg:  // has no alpha
-      EncodeBytes(file.path(), path, image.channels > kAlpha ? OnWhite(image) : image);
+      EncodeBytes(file.path(), path, image.channels > kAlphaChannel ? OnWhite(image) : image);
       break;
     case FileFormat::kExr:
       EncodeRadiance(file.path(), path, image);

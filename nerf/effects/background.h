@@ -1,12 +1,11 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <cstdint>
 #include <memory>
 #include <span>
 
 #include "nerf/effects/background_map.h"
+#include "nerf/libtorch.h"
 #include "nerf/render/ray_renderer.h"
 
 namespace nerf {

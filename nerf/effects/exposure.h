@@ -1,12 +1,11 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "nerf/data/image.h"
+#include "nerf/libtorch.h"
 
 namespace nerf {
 

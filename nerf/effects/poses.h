@@ -1,13 +1,12 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "nerf/effects/poses_options.h"
+#include "nerf/libtorch.h"
 #include "nerf/sampling/rays.h"
 
 namespace nerf {

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include "nerf/kernels/direction_encoding.h"
+#include "nerf/libtorch.h"
 
 namespace nerf {
 

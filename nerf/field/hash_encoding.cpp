@@ -1,5 +1,7 @@
 #include "nerf/field/hash_encoding.h"
 
+#include <ATen/CPUGeneratorImpl.h>
+
 #include "nerf/field/tensor_span.h"
 #include "nerf/parallel.h"
 

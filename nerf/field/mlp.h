@@ -1,9 +1,9 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <cstdint>
 #include <vector>
+
+#include "nerf/libtorch.h"
 
 namespace nerf {
 
@@ -18,11 +18,11 @@ class Mlp : public torch::nn::Module {
 
   // Inputs, hidden layers, outputs.
   std::vector<int> Widths() const;
-  // The weights of layer l, [outputs, inputs].
-  const torch::Tensor& Weight(int l) const { return layers_[l]->weight; }
+  // The weights of layer l, [outputs, inputs]: the parameter "layer0.weight" and on.
+  const torch::Tensor& Weight(int l) const { return weights_[l]; }
 
  private:
-  std::vector<torch::nn::Linear> layers_;
+  std::vector<torch::Tensor> weights_;
 };
 
 }  // namespace nerf

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <memory>
 
 #include "nerf/field/hash_encoding.h"
 #include "nerf/field/mlp.h"
+#include "nerf/libtorch.h"
 #include "nerf/sampling/proposal_options.h"
 
 namespace nerf {

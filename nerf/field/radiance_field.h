@@ -1,7 +1,5 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <memory>
 #include <vector>
 
@@ -9,6 +7,7 @@
 #include "nerf/field/field_options.h"
 #include "nerf/field/hash_encoding.h"
 #include "nerf/field/mlp.h"
+#include "nerf/libtorch.h"
 
 namespace nerf {
 

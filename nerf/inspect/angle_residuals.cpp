@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 constexpr double kDegreesEach = 5;
 constexpr int kAngles = 36;  // up to 180 degrees
-constexpr int kFewestViews = 5, kFewestSightings = 30;
+constexpr int kFewestAngles = 5, kFewestSightings = 30;
 
 // From a point to the camera of a photograph that sees it.
 Vector3d DirectionToCamera(const sfm::PosedImages& posed, const Sighting& s) {
@@ -32,7 +32,7 @@ std::vector<AngleResiduals> ResidualsByAngle(const sfm::PosedImages& posed,
   std::vector<std::vector<double>> residuals(kAngles);
   for (std::size_t i = 0; i < colors.seen.size(); ++i) {
     const Sighting& s = colors.seen[i];
-    if (count[s.point] < kFewestViews) continue;
+    if (count[s.point] < kFewestAngles) continue;
     const Vector3d direction = DirectionToCamera(posed, s), mean = sum[s.point];
     const double radians = std::atan2(direction.cross(mean).norm(), direction.dot(mean));
     const auto at = static_cast<int>(radians * 180 / std::numbers::pi / kDegreesEach);

@@ -20,25 +20,25 @@ constexpr std::int64_t kSlab = 4;
 // Light that gets through where a packet's samples missed what its ray meets.
 constexpr double kMissed = 0.1;
 
-// A ray on its way.
-struct RayState {
-  std::int64_t next = 0, end = 0;  // samples ahead
-  double optical_depth = 0;
-  float met = 0;     // weight so far
-  float shaded = 0;  // weight that has a colour
-  float heaviest_weight = 0;
-  std::int64_t heaviest = 0;  // sample
-  float weighted_t = 0;
-  float rgb[3] = {0, 0, 0};
-
-  double Transmittance() const { return std::exp(-optical_depth); }
-};
-
 }  // namespace
 
 struct PacketRenderer::Tile {
+  // A ray on its way.
+  struct Ray {
+    std::int64_t next = 0, end = 0;  // samples ahead
+    double optical_depth = 0;
+    float met = 0;     // weight so far
+    float shaded = 0;  // weight that has a colour
+    float heaviest_weight = 0;
+    std::int64_t heaviest = 0;  // sample
+    float weighted_t = 0;
+    float rgb[3] = {0, 0, 0};
+
+    double Transmittance() const { return std::exp(-optical_depth); }
+  };
+
   PlacedTile placed;
-  std::vector<RayState> rays;
+  std::vector<Ray> rays;
   std::vector<std::int64_t> alive;  // rays of the tile
 
   // Of the samples that the rays go on by.
@@ -87,7 +87,7 @@ void PacketRenderer::Begin(const RayBatch& rays, std::int64_t first, std::int64_
 void PacketRenderer::BeginMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const {
   if (!placement_.Shared()) return;
   for (std::size_t k = 0; k < tile.rays.size(); ++k) {
-    const RayState& ray = tile.rays[k];
+    const Tile::Ray& ray = tile.rays[k];
     if (ray.next == ray.end && ray.Transmittance() > kMissed) {
       tile.alive.push_back(static_cast<std::int64_t>(k));
     }
@@ -109,7 +109,7 @@ void PacketRenderer::Shade(const RayBatch& rays, std::int64_t first, Tile& tile)
   const auto count = static_cast<std::int64_t>(tile.kept.size());
   field_.Radiance(count, tile.kept_ray, std::span(rays.direction).subspan(3 * first), tile.field);
   for (std::int64_t i = 0; i < count; ++i) {
-    RayState& ray = tile.rays[tile.kept_ray[i]];
+    Tile::Ray& ray = tile.rays[tile.kept_ray[i]];
     const float weight = tile.kept_weight[i];
     ray.shaded += weight;
     for (int c = 0; c < 3; ++c) ray.rgb[c] += weight * tile.field.radiance[3 * i + c];
@@ -139,7 +139,7 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
   tile.ray.clear();
   const RaySamples& s = tile.placed.samples;
   for (const std::int64_t k : tile.alive) {
-    RayState& ray = tile.rays[k];
+    Tile::Ray& ray = tile.rays[k];
     const std::int64_t end = std::min(ray.end, ray.next + kSlab);
     tile.position.insert(tile.position.end(), s.position.begin() + 3 * ray.next,
                          s.position.begin() + 3 * end);
@@ -156,7 +156,7 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
   const auto share = static_cast<float>(quality_.color_share);
   const auto shares_met = [share](float weight) { return std::floor(weight / share + 0.5f); };
   for (std::size_t i = 0; i < tile.sample.size(); ++i) {
-    RayState& ray = tile.rays[tile.ray[i]];
+    Tile::Ray& ray = tile.rays[tile.ray[i]];
     const float dt = s.dt[tile.sample[i]];
     // As CompositeForward has it: an interval of length 0 is empty, whatever its density.
     const double x = dt > 0 ? static_cast<double>(tile.field.density.sigma[i]) * dt : 0;
@@ -178,7 +178,7 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
   }
   Shade(rays, first, tile);
   std::erase_if(tile.alive, [&](std::int64_t k) {
-    const RayState& ray = tile.rays[k];
+    const Tile::Ray& ray = tile.rays[k];
     return ray.next == ray.end || ray.Transmittance() < quality_.stop_transmittance;
   });
 }
@@ -191,7 +191,7 @@ void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& 
   tile.kept.clear();
   tile.kept_ray.clear();
   for (std::size_t k = 0; k < tile.rays.size(); ++k) {
-    const RayState& ray = tile.rays[k];
+    const Tile::Ray& ray = tile.rays[k];
     if (!(ray.shaded == 0 && ray.met > 0)) continue;
     const auto position = tile.placed.samples.position.begin() + 3 * ray.heaviest;
     tile.position.insert(tile.position.end(), position, position + 3);
@@ -230,7 +230,7 @@ RenderOutput PacketRenderer::Render(const RayBatch& rays) {
     ShadeFaint(rays, first, tile);
 
     for (std::int64_t k = 0; k < last - first; ++k) {
-      const RayState& ray = tile.rays[k];
+      const Tile::Ray& ray = tile.rays[k];
       const std::int64_t r = first + k;
       // What light is left where a ray is given up, and weight without a colour, take on the colour
       // of the rest.

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <vector>
 
 #include "nerf/field/proposal_field.h"
+#include "nerf/libtorch.h"
 #include "nerf/sampling/ray_intervals.h"
 #include "nerf/sampling/rays.h"
 

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "nerf/libtorch.h"
 #include "nerf/sampling/rays.h"
 
 namespace nerf {

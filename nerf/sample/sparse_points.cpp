@@ -13,9 +13,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kPoints = 3000;
-constexpr double kPixelError = 0.33;     // standard deviation along each axis
-constexpr double kSamePlace = 0.005;     // of the distance: what a camera meets is the point
-constexpr std::size_t kFewestViews = 3;  // as COLMAP keeps
+constexpr double kPixelError = 0.33;       // standard deviation along each axis
+constexpr double kSamePlace = 0.005;       // of the distance: what a camera meets is the point
+constexpr std::size_t kFewestCameras = 3;  // as COLMAP keeps
 
 Ray RayTo(const Vector3d& from, const Vector3d& to) { return {from, (to - from).normalized()}; }
 
@@ -75,7 +75,7 @@ std::vector<sfm::SparsePoint> SparsePoints(const Scene& scene, const sfm::PosedI
       point.track.push_back({static_cast<int>(k), *seen + wrong});
       point.reprojection_error += wrong.norm();
     }
-    if (point.track.size() < kFewestViews) continue;
+    if (point.track.size() < kFewestCameras) continue;
     point.reprojection_error /= static_cast<double>(point.track.size());
     points.push_back(std::move(point));
   }

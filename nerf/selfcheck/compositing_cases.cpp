@@ -13,8 +13,7 @@ namespace {
 
 using Ray = OneRay<float>;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-const std::vector<float> kRed = {1, 0, 0}, kAll = {1, 1, 1};
+const std::vector<float> kAll = {1, 1, 1};
 
 long double OpticalDepth(const Ray& ray) {
   long double tau = 0;

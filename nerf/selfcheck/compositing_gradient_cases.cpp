@@ -10,8 +10,6 @@ namespace {
 
 using Ray = OneRay<float>;
 
-const std::vector<float> kRed = {1, 0, 0};
-
 double GradientsOfRandomRaysMatchTheOracle() {
   WorstError worst;
   const std::vector<float> g_rgb = {0.3f, -0.7f, 0.2f};

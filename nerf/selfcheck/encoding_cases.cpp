@@ -18,8 +18,6 @@ namespace {
 
 using kernels::HashGridLayout;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 // Two dense levels and four hashed ones.
 HashGridLayout SmallGrid(int features) {
   return kernels::MakeHashGridLayout({6, features, 10, 4, 128});

@@ -9,6 +9,8 @@
 
 namespace nerf {
 
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 // A hard case of the arithmetic: a claim, and how far from it this machine computes. The tests hold
 // each to its bound on every SIMD level; `nerf selfcheck` does so where a person is.
 struct NumericCase {

@@ -11,6 +11,8 @@
 
 namespace nerf {
 
+inline const std::vector<float> kRed = {1, 0, 0};
+
 // One ray for the compositing kernels in Real (float or double) and for their oracle.
 template <class Real>
 struct OneRay {

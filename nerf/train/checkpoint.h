@@ -1,12 +1,11 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "nerf/libtorch.h"
 #include "nerf/train/checkpoint_file.h"
 
 namespace nerf {

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <optional>
 
 #include "nerf/effects/robust.h"
+#include "nerf/libtorch.h"
 #include "nerf/train/train_options.h"
 
 namespace nerf {

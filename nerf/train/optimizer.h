@@ -1,6 +1,6 @@
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/optim/optimizer.h>
 
 #include <cstdint>
 #include <map>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nerf/kernels/adam.h"
+#include "nerf/libtorch.h"
 #include "nerf/train/train_options.h"
 
 namespace nerf {

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <torch/torch.h>
-
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "nerf/libtorch.h"
 #include "nerf/train/model.h"
 
 namespace nerf {

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <torch/torch.h>
 
 #include <algorithm>
 #include <functional>
+
+#include "nerf/libtorch.h"
 
 namespace nerf::test {
 

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <torch/torch.h>
 
 #include <atomic>
 #include <string>
 #include <vector>
 
+#include "nerf/libtorch.h"
 #include "nerf/train/checkpoint.h"
 #include "nerf/train/run_folder.h"
 #include "nerf/train/trainer.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <torch/torch.h>
 
 #include <cmath>
 #include <map>
@@ -14,6 +13,7 @@
 #include "nerf/effects/poses.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
+#include "nerf/libtorch.h"
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/train/fused_engine.h"
 #include "nerf/train/libtorch_engine.h"

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kCosines[] = {1.0, 0.8, 0.4, 0.1, 0.01};
 
 Vector3d Towards(double cosine) { return {std::sqrt(1 - cosine * cosine), 0, cosine}; }
@@ -49,7 +49,7 @@ Color DirectionalAlbedo(const Brdf& brdf, const Vector3d& w_o, int steps = 256) 
       sum += brdf.Eval(w_o, CosineOnHemisphere(u));
     }
   }
-  return sum * kPi / (2.0 * steps * steps);
+  return sum * pi / (2.0 * steps * steps);
 }
 
 class EveryBrdf : public testing::TestWithParam<Named> {};
@@ -123,10 +123,10 @@ TEST(Ggx, NormalsAreNormalised) {
     double sum = 0;
     constexpr int kSteps = 200000;
     for (int i = 0; i < kSteps; ++i) {
-      const double theta = (i + 0.5) / kSteps * kPi / 2;
+      const double theta = (i + 0.5) / kSteps * pi / 2;
       sum += facets.NormalDensity(Towards(std::cos(theta))) * std::cos(theta) * std::sin(theta);
     }
-    EXPECT_NEAR(sum * 2 * kPi * (kPi / 2) / kSteps, 1, 1e-6) << alpha;
+    EXPECT_NEAR(sum * 2 * pi * (pi / 2) / kSteps, 1, 1e-6) << alpha;
   }
 }
 
@@ -142,7 +142,7 @@ TEST(Ggx, MaskingHidesAsMuchAsFacesTheViewerTooMuch) {
         const Vector3d h = FibonacciDirection(i, 2 * kDraws);
         sum += std::max(0.0, w.dot(h)) * facets.NormalDensity(h) * facets.Masking(cosine);
       }
-      EXPECT_NEAR(sum * 2 * kPi / kDraws, cosine, 2e-3 * cosine + 1e-4) << alpha << " " << cosine;
+      EXPECT_NEAR(sum * 2 * pi / kDraws, cosine, 2e-3 * cosine + 1e-4) << alpha << " " << cosine;
     }
   }
 }
@@ -161,7 +161,7 @@ TEST(Ggx, PassesTheWeakWhiteFurnace) {
         if (h.z() <= 0) continue;
         sum += facets.Masking(cosine) * facets.NormalDensity(h) / (4 * cosine);
       }
-      EXPECT_NEAR(sum * 4 * kPi / kDraws, 1, 5e-3) << alpha << " " << cosine;
+      EXPECT_NEAR(sum * 4 * pi / kDraws, 1, 5e-3) << alpha << " " << cosine;
     }
   }
 }
@@ -231,7 +231,7 @@ TEST(CoatedDiffuse, TendsToAMirrorOverAMattBaseAsItsRoughnessGoes) {
       // Far from the mirrored direction the base is all.
       const double l = v < 0.9 ? 0.97 : 0.3;
       const Color base =
-          red * (1 - SchlickFresnel(F0, v)) * (1 - SchlickFresnel(F0, l)) / (kPi * (1 - mean));
+          red * (1 - SchlickFresnel(F0, v)) * (1 - SchlickFresnel(F0, l)) / (pi * (1 - mean));
       EXPECT_LT((glazed.Eval(Towards(v), Towards(l)) - base).abs().maxCoeff(), 0.01 * base.x());
     }
   }
@@ -264,7 +264,7 @@ TEST(CoatedDiffuse, OfNoCoatIsLambert) {
   const CoatedDiffuse bare(red, 1.0 + 1e-9, 0.5);
   // Schlick's coat still reflects at grazing angles, so nearly head-on.
   const Color f = bare.Eval(Towards(1), Towards(0.95));
-  EXPECT_LT((f - red / kPi).abs().maxCoeff(), 0.06 * red.x() / kPi);
+  EXPECT_LT((f - red / pi).abs().maxCoeff(), 0.06 * red.x() / pi);
 }
 
 TEST(Lambert, ReflectsItsAlbedo) {

@@ -8,18 +8,18 @@
 namespace nerf::appearance {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // 2 pi integral of R_d r dr, with r = tan(t) so that it reaches infinity.
 Color Integrated(const Dipole& dipole) {
   Color sum = Color::Zero();
   constexpr int kSteps = 200000;
   for (int i = 0; i < kSteps; ++i) {
-    const double t = (i + 0.5) / kSteps * kPi / 2;
+    const double t = (i + 0.5) / kSteps * pi / 2;
     const double r = std::tan(t);
     sum += dipole.DiffuseReflectance(r) * (r / std::pow(std::cos(t), 2));
   }
-  return sum * (2 * kPi * kPi / 2 / kSteps);
+  return sum * (2 * pi * pi / 2 / kSteps);
 }
 
 TEST(Dipole, SumsToItsTotalDiffuseReflectance) {
@@ -55,7 +55,7 @@ TEST(Dipole, IsThePublishedProfile) {
   for (const double r : {0.0, 0.1, 1.0, 5.0, 20.0}) {
     const long double dr = std::sqrt(r * r + zr * zr);
     const long double dv = std::sqrt(r * r + zv * zv);
-    const long double expected = s / st / (4 * kPi) *
+    const long double expected = s / st / (4 * pi) *
                                  (zr * (str * dr + 1) * std::exp(-str * dr) / (dr * dr * dr) +
                                   zv * (str * dv + 1) * std::exp(-str * dv) / (dv * dv * dv));
     EXPECT_NEAR(dipole.DiffuseReflectance(r).x() / static_cast<double>(expected), 1, 1e-9) << r;

@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Image Black(int height) { return Image(2 * height, height, 3, ColorEncoding::kLinear); }
 
@@ -66,7 +66,7 @@ TEST(EnvironmentMap, PixelsAreFoundByTheirDirectionsAndCoverTheSphere) {
       sum += map.SolidAngle(y);
     }
   }
-  EXPECT_NEAR(sum, 4 * kPi, 1e-12);
+  EXPECT_NEAR(sum, 4 * pi, 1e-12);
 }
 
 TEST(EnvironmentMap, IsDrawnFromAsItsDensitySays) {
@@ -129,10 +129,10 @@ TEST(EnvironmentMap, ThatIsBlackGivesNoDirection) {
 
 TEST(EnvironmentMap, PolesAreNoBrighterThanTheRest) {
   const EnvironmentMap map = EnvironmentMap::Uniform(Color::Ones());
-  EXPECT_NEAR(map.Pdf(Vector3d::UnitY()), 1 / (4 * kPi), 1e-9);
-  EXPECT_NEAR(map.Pdf(-Vector3d::UnitY()), 1 / (4 * kPi), 1e-9);
+  EXPECT_NEAR(map.Pdf(Vector3d::UnitY()), 1 / (4 * pi), 1e-9);
+  EXPECT_NEAR(map.Pdf(-Vector3d::UnitY()), 1 / (4 * pi), 1e-9);
   for (const Vector3d& n : {Vector3d(0, 1, 0), Vector3d(1, 0, 0), Vector3d(0, -0.6, 0.8)}) {
-    EXPECT_NEAR(map.Irradiance(n).x(), kPi, 1e-2);
+    EXPECT_NEAR(map.Irradiance(n).x(), pi, 1e-2);
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<DirectionalLight> LightsAt(const std::vector<Vector3d>& directions) {
   std::vector<DirectionalLight> lights;
@@ -28,8 +28,8 @@ std::vector<DirectionalLight> GridOfLights(int rows, int columns) {
   std::vector<Vector3d> directions;
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < columns; ++c) {
-      const double theta = kPi * (r + 0.5) / rows;
-      const double phi = 2 * kPi * c / columns;
+      const double theta = pi * (r + 0.5) / rows;
+      const double phi = 2 * pi * c / columns;
       directions.push_back(
           {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)});
     }
@@ -51,8 +51,8 @@ TEST(LightVoronoi, CellsOfACubesCornersAndFacesAreAlike) {
   for (const auto& directions : {faces, corners}) {
     const LightVoronoi cells(LightsAt(directions), 256);
     const auto angles = cells.SolidAngles();
-    EXPECT_NEAR(Sum(angles), 4 * kPi, 1e-6);
-    const double expected = 4 * kPi / static_cast<double>(directions.size());
+    EXPECT_NEAR(Sum(angles), 4 * pi, 1e-6);
+    const double expected = 4 * pi / static_cast<double>(directions.size());
     for (const double angle : angles) EXPECT_NEAR(angle, expected, 0.01 * expected);
   }
 }
@@ -66,7 +66,7 @@ TEST(LightVoronoi, TheEdgeOfACellLiesInTheMiddle) {
                            256);
   const auto angles = cells.SolidAngles();
   EXPECT_NEAR(angles[1], angles[2], 1e-9);
-  EXPECT_NEAR(Sum(angles), 4 * kPi, 1e-6);
+  EXPECT_NEAR(Sum(angles), 4 * pi, 1e-6);
 }
 
 TEST(LightVoronoi, OnAGridIsTheSinTerm) {
@@ -75,10 +75,10 @@ TEST(LightVoronoi, OnAGridIsTheSinTerm) {
   const LightVoronoi cells(GridOfLights(kRows, kColumns), 240);
   EXPECT_TRUE(cells.on_a_grid());
   const auto angles = cells.SolidAngles();
-  EXPECT_NEAR(Sum(angles), 4 * kPi, 1e-6);
+  EXPECT_NEAR(Sum(angles), 4 * pi, 1e-6);
   for (int r = 0; r < kRows; ++r) {
-    const double theta = kPi * (r + 0.5) / kRows;
-    const double sin_term = std::sin(theta) * (kPi / kRows) * (2 * kPi / kColumns);
+    const double theta = pi * (r + 0.5) / kRows;
+    const double sin_term = std::sin(theta) * (pi / kRows) * (2 * pi / kColumns);
     for (int c = 0; c < kColumns; ++c) {
       EXPECT_NEAR(angles[r * kColumns + c], sin_term, 0.004 * sin_term) << r << " " << c;
     }
@@ -90,7 +90,7 @@ TEST(LightVoronoi, OfALatticeIsNoGrid) {
   for (int i = 0; i < 100; ++i) directions.push_back(FibonacciDirection(i, 100));
   const LightVoronoi cells(LightsAt(directions), 128);
   EXPECT_FALSE(cells.on_a_grid());
-  for (const double angle : cells.SolidAngles()) EXPECT_NEAR(angle, 4 * kPi / 100, 0.02);
+  for (const double angle : cells.SolidAngles()) EXPECT_NEAR(angle, 4 * pi / 100, 0.02);
 }
 
 // What filtering is for: the light of a sun anywhere goes to the light beside it, all of it.
@@ -187,11 +187,11 @@ TEST(LightVoronoi, CellsAreFinerThanACoarseMap) {
   const auto weights = cells.Integrate(EnvironmentMap::Uniform(Color(1, 2, 3)));
   double sum = 0;
   for (const Color& weight : weights) {
-    EXPECT_NEAR(weight.x(), 4 * kPi / 1000, 0.2 * 4 * kPi / 1000);
+    EXPECT_NEAR(weight.x(), 4 * pi / 1000, 0.2 * 4 * pi / 1000);
     EXPECT_NEAR(weight.z(), 3 * weight.x(), 1e-9);
     sum += weight.x();
   }
-  EXPECT_NEAR(sum, 4 * kPi, 1e-6);
+  EXPECT_NEAR(sum, 4 * pi, 1e-6);
 }
 
 TEST(LightVoronoi, OfNoLightsIsRefused) {

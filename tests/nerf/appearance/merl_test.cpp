@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(RusinkiewiczAngles, AreThoseOfTheDirectionsTheyGive) {
   for (std::uint64_t i = 0; i < 1000; ++i) {
@@ -68,7 +68,7 @@ TEST(MerlBrdf, OfALambertianIsConstantUpToTheHorizon) {
     const Vector3d w_o = CosineOnHemisphere(test::Uniform3(1, i).head<2>());
     const Vector3d w_i = CosineOnHemisphere(test::Uniform3(2, i).head<2>());
     if (w_o.z() < 0.05 || w_i.z() < 0.05) continue;
-    ASSERT_NEAR(measured.Eval(w_o, w_i).x(), 0.5 / kPi, 1e-9);
+    ASSERT_NEAR(measured.Eval(w_o, w_i).x(), 0.5 / pi, 1e-9);
   }
 }
 

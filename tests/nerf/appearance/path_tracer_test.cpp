@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using sample::Ray;
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Surface MattBall(const Color& albedo, const Vector3d& center = Vector3d::Zero()) {
   return {sample::Sphere{center, 1}, std::make_shared<Lambert>(albedo)};
@@ -55,7 +55,7 @@ TEST(PathTracer, ASphereUnderADirectionalLightIsItsClosedForm) {
   scene.directional_lights = {{to_light, Color(3, 2, 1)}};
   for (const double x : {-0.9, -0.4, 0.0, 0.3, 0.8}) {
     const Vector3d normal(x, 0, std::sqrt(1 - x * x));
-    const Color expected = albedo / kPi * Color(3, 2, 1) * std::max(0.0, normal.dot(to_light));
+    const Color expected = albedo / pi * Color(3, 2, 1) * std::max(0.0, normal.dot(to_light));
     const Color found = MeanRadiance(scene, {}, Down(x, 0), 1).radiance;
     EXPECT_LT((found - expected).abs().maxCoeff(), 1e-12) << x;
   }
@@ -66,7 +66,7 @@ TEST(PathTracer, APointLightLightsByTheSquareOfItsDistance) {
   scene.surfaces = {MattBall(Color::Ones())};
   scene.point_lights = {{{0, 0, 3}, Color::Constant(8)}};
   EXPECT_NEAR(MeanRadiance(scene, {}, {{0, 0.001, 10}, -Vector3d::UnitZ()}, 1).radiance.x(),
-              8.0 / 4 / kPi, 1e-3);
+              8.0 / 4 / pi, 1e-3);
 }
 
 // Whatever a body's shape and coat: where all around is equally bright and nothing is absorbed, it
@@ -133,9 +133,9 @@ TEST(PathTracer, ABallReflectsWhatItDoesNotAbsorb) {
   for (int i = 0; i < kPoints; ++i) {
     const double z = -1 + 2 * (i + 0.5) / kPoints;
     const Vector3d n(std::sqrt(1 - z * z), 0, z);
-    power += kPi * MeanRadiance(scene, {}, {3 * n, -n}, 1).radiance.x() * 4 * kPi / kPoints;
+    power += pi * MeanRadiance(scene, {}, {3 * n, -n}, 1).radiance.x() * 4 * pi / kPoints;
   }
-  EXPECT_NEAR(power, 0.7 * 2 * kPi, 0.01);
+  EXPECT_NEAR(power, 0.7 * 2 * pi, 0.01);
 }
 
 TEST(PathTracer, ShadowsFallBehindBodiesUnlessTheyAreOff) {
@@ -175,7 +175,7 @@ TEST(PathTracer, AMattBallUnderAnEnvironmentShowsItsIrradiance) {
   scene.surfaces = {MattBall(Color::Constant(0.5))};
   for (const double x : {-0.5, 0.0, 0.5}) {
     const Vector3d normal(x, 0, std::sqrt(1 - x * x));
-    const double expected = 0.5 / kPi * map->Irradiance(normal).x();
+    const double expected = 0.5 / pi * map->Irradiance(normal).x();
     for (const bool shadows : {true, false}) {
       TransportTerms terms;
       terms.shadows = shadows;

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
 
-constexpr double kAlbedo = 0.6;
+constexpr double kGrey = 0.6;
 
 StereoOptions By(StereoMethod method) {
   StereoOptions options;
@@ -40,7 +40,7 @@ double MeanError(const std::vector<DirectionalLight>& lights,
 
 TEST(PhotometricStereo, IsExactOnAMattSphereUnderTwelveLights) {
   const auto lights = test::RingOfLights(12, 45);
-  const auto sphere = test::LitSphere(lights, kAlbedo);
+  const auto sphere = test::LitSphere(lights, kGrey);
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kAuto, "no noise, auto"), 0.05);
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kRobust, "no noise, robust"), 0.05);
 }
@@ -49,11 +49,11 @@ TEST(PhotometricStereo, LeastSquaresIsExactWhereEveryLightReachesTheSurface) {
   const auto lights = test::RingOfLights(12, 45);
   const PhotometricSolver solver(lights, By(StereoMethod::kLeastSquares));
   int compared = 0;
-  for (const auto& pixel : test::LitSphere(lights, kAlbedo)) {
+  for (const auto& pixel : test::LitSphere(lights, kGrey)) {
     if (std::ranges::any_of(pixel.observations, [](double b) { return b == 0; })) continue;
     const SurfaceEstimate estimate = solver.Solve(pixel.observations);
     ASSERT_LT(test::DegreesBetween(estimate.normal, pixel.normal), 1e-6);
-    ASSERT_NEAR(estimate.albedo, kAlbedo, 1e-9);
+    ASSERT_NEAR(estimate.albedo, kGrey, 1e-9);
     ASSERT_LT(estimate.residual, 1e-9);
     ++compared;
   }
@@ -63,7 +63,7 @@ TEST(PhotometricStereo, LeastSquaresIsExactWhereEveryLightReachesTheSurface) {
 // The reason why there is a robust method at all.
 TEST(PhotometricStereo, SurvivesShadowsAndHighlightsThatMisleadLeastSquares) {
   const auto lights = test::RingOfLights(12, 45);
-  const auto sphere = test::LitSphere(lights, kAlbedo, {.shadows = 0.1, .highlights = 0.1});
+  const auto sphere = test::LitSphere(lights, kGrey, {.shadows = 0.1, .highlights = 0.1});
   const double plain = MeanError(lights, sphere, StereoMethod::kLeastSquares,
                                  "20 % shadows and highlights, least squares");
   EXPECT_GT(plain, 5);
@@ -74,17 +74,17 @@ TEST(PhotometricStereo, SurvivesShadowsAndHighlightsThatMisleadLeastSquares) {
 
 TEST(PhotometricStereo, SurvivesTwentyPerCentOfEitherKind) {
   const auto lights = test::RingOfLights(24, 45);
-  EXPECT_LT(MeanError(lights, test::LitSphere(lights, kAlbedo, {.shadows = 0.2}),
+  EXPECT_LT(MeanError(lights, test::LitSphere(lights, kGrey, {.shadows = 0.2}),
                       StereoMethod::kRobust, "20 % shadows, 24 lights"),
             1);
-  EXPECT_LT(MeanError(lights, test::LitSphere(lights, kAlbedo, {.highlights = 0.2}),
+  EXPECT_LT(MeanError(lights, test::LitSphere(lights, kGrey, {.highlights = 0.2}),
                       StereoMethod::kRobust, "20 % highlights, 24 lights"),
             1);
 }
 
 TEST(PhotometricStereo, NoiseCostsRobustnessLittle) {
   const auto lights = test::RingOfLights(12, 45);
-  const auto sphere = test::LitSphere(lights, kAlbedo, {.noise = 0.01});
+  const auto sphere = test::LitSphere(lights, kGrey, {.noise = 0.01});
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kRobust, "1 % noise, robust"), 2.5);
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kAuto, "1 % noise, auto"), 2.5);
 }

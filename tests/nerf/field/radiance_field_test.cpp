@@ -34,13 +34,18 @@ std::shared_ptr<RadianceField> MakeField(ColorEncoding encoding = ColorEncoding:
   return field;
 }
 
+// [count,3], evenly over the sphere.
+torch::Tensor UnitVectors(std::int64_t count) {
+  const torch::Tensor d = torch::randn({count, 3}, torch::kDouble);
+  return d / d.norm(2, 1, true);
+}
+
 TEST(RadianceField, GradientsOfEveryParameterMatchCentralDifferences) {
   for (const ColorEncoding encoding : {ColorEncoding::kSrgb, ColorEncoding::kLinear}) {
     const auto field = MakeField(encoding);
     torch::manual_seed(2);
     const torch::Tensor positions = torch::rand({20, 3}, torch::kDouble);
-    const torch::Tensor directions = torch::nn::functional::normalize(
-        torch::randn({4, 3}, torch::kDouble), torch::nn::functional::NormalizeFuncOptions().dim(1));
+    const torch::Tensor directions = UnitVectors(4);
     const torch::Tensor ray = torch::arange(20, torch::kLong).div(5, "floor");
     const auto loss = [&] {
       const FieldOutput out = field->forward(positions, directions, ray);
@@ -85,9 +90,7 @@ TEST(TruncatedExp, NeitherValueNorGradientOverflowsOrDies) {
 TEST(DirectionEncoding, SphericalHarmonicsAreOrthonormal) {
   torch::manual_seed(1);
   constexpr std::int64_t kCount = 400000;
-  const torch::Tensor d =
-      torch::nn::functional::normalize(torch::randn({kCount, 3}, torch::kDouble),
-                                       torch::nn::functional::NormalizeFuncOptions().dim(1));
+  const torch::Tensor d = UnitVectors(kCount);
   const torch::Tensor y = EncodeDirections(d);
   const torch::Tensor gram = 4 * M_PI * y.t().mm(y) / static_cast<double>(kCount);
   const double worst =

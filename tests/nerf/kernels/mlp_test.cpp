@@ -13,10 +13,10 @@
 namespace nerf::kernels {
 namespace {
 
-using Weights = std::vector<std::vector<double>>;  // a layer: [outputs, inputs]
+using LayerWeights = std::vector<std::vector<double>>;  // a layer: [outputs, inputs]
 
 // The network in plain double loops.
-std::vector<double> Reference(const std::vector<int>& widths, const Weights& weights,
+std::vector<double> Reference(const std::vector<int>& widths, const LayerWeights& weights,
                               std::vector<double> x) {
   for (std::size_t l = 0; l + 1 < widths.size(); ++l) {
     std::vector<double> y(widths[l + 1], 0.0);
@@ -75,7 +75,7 @@ class TileMlps : public test::EverySimdLevel {
 
   std::vector<int> widths_;
   std::int64_t samples_ = 0;
-  Weights weights_;
+  LayerWeights weights_;
   std::vector<double> inputs_, direction_;
 };
 

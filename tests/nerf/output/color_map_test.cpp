@@ -5,15 +5,12 @@
 #include <limits>
 
 #include "sfm/input_error.h"
+#include "tests/support/constant_image.h"
 
 namespace nerf {
 namespace {
 
-Image Constant(int width, int height, int channels, float value) {
-  Image image(width, height, channels);
-  for (float& v : image.pixels) v = value;
-  return image;
-}
+using test::ConstantImage;
 
 Eigen::Vector3f At(const Image& image, int x, int y) {
   return Eigen::Map<const Eigen::Vector3f>(image.At(x, y));
@@ -50,7 +47,7 @@ TEST(Heat, BrightensFromBlackToWhite) {
 TEST(ColorizeDepth, NearIsRedAndFarIsBlue) {
   Image depth(100, 1, 1);
   for (int x = 0; x < 100; ++x) *depth.At(x, 0) = 5.0f + static_cast<float>(x);
-  const Image colors = ColorizeDepth(depth, Constant(100, 1, 1, 1));
+  const Image colors = ColorizeDepth(depth, ConstantImage(100, 1, 1, 1));
   EXPECT_EQ(At(colors, 0, 0), Turbo(1));
   EXPECT_EQ(At(colors, 99, 0), Turbo(0));
   EXPECT_LT((At(colors, 50, 0) - Turbo(0.49f)).norm(), 0.05f);
@@ -58,7 +55,7 @@ TEST(ColorizeDepth, NearIsRedAndFarIsBlue) {
 
 TEST(ColorizeDepth, OutliersAndTransparentPixelsDoNotSetTheRange) {
   Image depth(200, 1, 1);
-  Image opacity = Constant(200, 1, 1, 1);
+  Image opacity = ConstantImage(200, 1, 1, 1);
   for (int x = 0; x < 200; ++x) *depth.At(x, 0) = 1 + static_cast<float>(x) / 199;
   const Image plain = ColorizeDepth(depth, opacity);
   *depth.At(0, 0) = 1e6f;
@@ -70,20 +67,20 @@ TEST(ColorizeDepth, OutliersAndTransparentPixelsDoNotSetTheRange) {
 }
 
 TEST(ColorizeDepth, IsGreyWhereNothingIsSeen) {
-  const Image grey = ColorizeDepth(Constant(4, 3, 1, 0), Constant(4, 3, 1, 0));
+  const Image grey = ColorizeDepth(ConstantImage(4, 3, 1, 0), ConstantImage(4, 3, 1, 0));
   EXPECT_EQ(At(grey, 2, 1), Eigen::Vector3f::Constant(0.5f));
-  const Image undefined = ColorizeDepth(Constant(4, 3, 1, std::numeric_limits<float>::quiet_NaN()),
-                                        Constant(4, 3, 1, 1));
+  const Image undefined = ColorizeDepth(
+      ConstantImage(4, 3, 1, std::numeric_limits<float>::quiet_NaN()), ConstantImage(4, 3, 1, 1));
   EXPECT_EQ(At(undefined, 2, 1), Eigen::Vector3f::Constant(0.5f));
 }
 
 TEST(ColorizeDepth, OfAWallHasOneColour) {
-  const Image wall = ColorizeDepth(Constant(4, 3, 1, 2.5f), Constant(4, 3, 1, 1));
+  const Image wall = ColorizeDepth(ConstantImage(4, 3, 1, 2.5f), ConstantImage(4, 3, 1, 1));
   EXPECT_EQ(At(wall, 0, 0), At(wall, 3, 2));
 }
 
 TEST(ColorizeError, GrowsWithTheDifference) {
-  Image a = Constant(3, 1, 3, 0.5f);
+  Image a = ConstantImage(3, 1, 3, 0.5f);
   Image b = a;
   b.At(1, 0)[0] += 0.3f;
   for (int c = 0; c < 3; ++c) b.At(2, 0)[c] -= kWhiteError;

@@ -5,15 +5,12 @@
 #include <vector>
 
 #include "sfm/input_error.h"
+#include "tests/support/constant_image.h"
 
 namespace nerf {
 namespace {
 
-Image Constant(int width, int height, int channels, float value) {
-  Image image(width, height, channels);
-  for (float& v : image.pixels) v = value;
-  return image;
-}
+using test::ConstantImage;
 
 // Number of pixels of a grey value.
 int Count(const Image& image, float value) {
@@ -27,7 +24,7 @@ int Count(const Image& image, float value) {
 
 TEST(ContactSheet, HoldsTruthRenderingAndDifference) {
   const std::vector<ContactSheetRow> rows = {
-      {"", Constant(30, 20, 3, 0.25f), Constant(30, 20, 3, 0.25f)}};
+      {"", ConstantImage(30, 20, 3, 0.25f), ConstantImage(30, 20, 3, 0.25f)}};
   const Image sheet = ContactSheet(rows);
   ASSERT_EQ(sheet.channels, 3);
   EXPECT_EQ(sheet.encoding, ColorEncoding::kSrgb);
@@ -38,8 +35,8 @@ TEST(ContactSheet, HoldsTruthRenderingAndDifference) {
 
 TEST(ContactSheet, StacksRowsOfDifferentSizes) {
   const std::vector<ContactSheetRow> rows = {
-      {"", Constant(30, 20, 3, 0.25f), Constant(30, 20, 3, 0.5f)},
-      {"", Constant(50, 10, 3, 0.75f), Constant(50, 10, 3, 0.5f)}};
+      {"", ConstantImage(30, 20, 3, 0.25f), ConstantImage(30, 20, 3, 0.5f)},
+      {"", ConstantImage(50, 10, 3, 0.75f), ConstantImage(50, 10, 3, 0.5f)}};
   const Image sheet = ContactSheet(rows);
   EXPECT_EQ(Count(sheet, 0.25f), 600);
   EXPECT_EQ(Count(sheet, 0.75f), 500);
@@ -48,7 +45,7 @@ TEST(ContactSheet, StacksRowsOfDifferentSizes) {
 
 TEST(ContactSheet, ReducesLargePicturesToTwoThousandPixels) {
   const std::vector<ContactSheetRow> rows = {
-      {"", Constant(1500, 40, 3, 0.25f), Constant(1500, 40, 3, 0.25f)}};
+      {"", ConstantImage(1500, 40, 3, 0.25f), ConstantImage(1500, 40, 3, 0.25f)}};
   const Image sheet = ContactSheet(rows);
   EXPECT_LE(sheet.width, 2000);
   EXPECT_GT(sheet.width, 1500);
@@ -56,13 +53,13 @@ TEST(ContactSheet, ReducesLargePicturesToTwoThousandPixels) {
 
 TEST(ContactSheet, LaysAlphaOverWhite) {
   const std::vector<ContactSheetRow> rows = {
-      {"", Constant(9, 9, 4, 0.5f), Constant(9, 9, 3, 0.75f)}};
+      {"", ConstantImage(9, 9, 4, 0.5f), ConstantImage(9, 9, 3, 0.75f)}};
   EXPECT_EQ(Count(ContactSheet(rows), 0.75f), 2 * 81);
 }
 
 TEST(ContactSheet, CaptionsStayOffThePictures) {
   std::vector<ContactSheetRow> rows = {
-      {"r_8.png  31.42 dB", Constant(90, 20, 3, 0.25f), Constant(90, 20, 3, 0.25f)}};
+      {"r_8.png  31.42 dB", ConstantImage(90, 20, 3, 0.25f), ConstantImage(90, 20, 3, 0.25f)}};
   EXPECT_EQ(Count(ContactSheet(rows), 0.25f), 2 * 90 * 20);
 }
 

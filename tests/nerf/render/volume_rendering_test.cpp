@@ -2,11 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <torch/torch.h>
 
 #include <cmath>
 #include <string>
 
+#include "nerf/libtorch.h"
 #include "nerf/parallel.h"
 #include "tests/support/central_differences.h"
 

@@ -9,13 +9,14 @@
 #include "sfm/transforms_json.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/tiny_training.h"
 
 namespace nerf {
 namespace {
 
 using testing::HasSubstr;
 
-const std::atomic<bool> never_stop = false;
+using test::never_stop;
 
 sfm::PosedImages SmallSample(const test::ScratchFolder& folder, int views) {
   sample::SampleOptions options;

@@ -1,6 +1,7 @@
 #include "nerf/train/optimizer.h"
 
 #include <gtest/gtest.h>
+#include <torch/optim/adam.h>
 
 #include "nerf/train/non_finite_error.h"
 

@@ -13,11 +13,12 @@
 #include "nerf/train/run_folder.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/small_capture.h"
+#include "tests/support/tiny_training.h"
 
 namespace nerf {
 namespace {
 
-const std::atomic<bool> never_stop = false;
+using test::never_stop;
 
 void ExpectSameTensors(const Checkpoint& a, const Checkpoint& b) {
   ASSERT_EQ(a.tensors.size(), b.tensors.size());
