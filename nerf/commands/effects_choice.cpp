@@ -64,6 +64,26 @@ bool EffectsChoice::IsOpen(const std::string& effect) const {
   });
 }
 
+void EffectsChoice::HeedAlpha() {
+  const auto find = [&](const char* effect) {
+    return std::ranges::find(inspection_.verdicts, effect, &Verdict::effect);
+  };
+  const auto replace = [&](Verdict& verdict, bool on, const char* why) {
+    if (named_.contains(verdict.effect)) return;
+    verdict = Fact(verdict.effect, on, 0, why);
+    assignments_.push_back(verdict.assignment);
+    fmt::print("{}", RowOf(verdict));
+  };
+  const auto background = find("background"), unbounded = find("unbounded");
+  const auto end = inspection_.verdicts.end();
+  if (background == end || !background->decided || (!background->on && background->IsSure()))
+    return;
+  if (background->on && unbounded != end && !unbounded->on) {
+    replace(*unbounded, true, "no background is learned that would hold what is far");
+  }
+  replace(*background, false, "some photograph has alpha, and shows none");
+}
+
 void EffectsChoice::Try(const Config& config, const SceneFacts& scene, double seconds_left,
                         Dataset& data) {
   const EffectTrials trials =

@@ -26,6 +26,10 @@ class EffectsChoice {
   //   posed  that was looked at
   std::vector<double> StopsOfTrained(const sfm::PosedImages& posed, const Dataset& data) const;
 
+  // Where photographs turned out to have alpha, of which too little was seen to tell when a few
+  // were looked at: then no background is learned, and contracted space holds what is far.
+  void HeedAlpha();
+
   // Whether an effect is to be tried.
   bool IsOpen(const std::string& effect) const;
 

@@ -1,8 +1,10 @@
 #include "nerf/commands/effects_trials.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -11,13 +13,15 @@
 #include "nerf/stopwatch.h"
 #include "nerf/train/effect_trial.h"
 #include "nerf/train/held_out.h"
+#include "nerf/train/non_finite_error.h"
 
 namespace nerf {
 namespace {
 
 constexpr std::int64_t kSamples = 16384;   // a step
 constexpr double kWorthIt = 0.2;           // dB, more than the noise of a trial
-constexpr double kShare = 0.15;            // of the training, that trials may take
+constexpr double kShare = 1.0 / 7;         // of the training, that trials may take
+constexpr double kFastest = 0.005;         // seconds of a step, while no more is known
 constexpr std::size_t kFewestHeldOut = 2;  // on one photograph a difference is chance
 
 // Steps of a trial. Poses must be found before they are worth anything.
@@ -27,7 +31,7 @@ int StepsOf(const std::string& effect) { return effect == "poses" ? 400 : 200; }
 class Allowance {
  public:
   Allowance(const TrainOptions& options, double seconds_left)
-      : seconds_(options.time_budget > 0 ? kShare * seconds_left
+      : seconds_(options.time_budget > 0 ? kShare / (1 + kShare) * seconds_left
                                          : std::numeric_limits<double>::infinity()),
         steps_(options.time_budget > 0
                    ? std::numeric_limits<double>::infinity()
@@ -38,6 +42,7 @@ class Allowance {
     return done_ + more <= steps_ && watch_.Seconds() + more * seconds_a_step <= seconds_;
   }
   void Count(int steps) { done_ += steps; }
+  bool IsByTheClock() const { return std::isfinite(seconds_); }
   double Seconds() const { return watch_.Seconds(); }
 
  private:
@@ -70,23 +75,37 @@ EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
   if (held_out.Count() < kFewestHeldOut) return trials;
   Config trial = config;
   trial.train.samples_per_batch = kSamples;
+  double seconds_a_step = 0;       // not known yet
+  std::map<int, double> as_it_is;  // PSNR of `trial` after so many steps
   const auto psnr_of = [&](const Config& tried, int steps) {
     allowance.Count(steps);
-    return TryConfig(tried, scene, data, steps).psnr;
+    try {
+      const TrialResult result = TryConfig(tried, scene, data, steps);
+      seconds_a_step = result.seconds / steps;
+      return result.psnr;
+    } catch (const NonFiniteError&) {  // a training that goes wrong is worth nothing
+      return -std::numeric_limits<double>::infinity();
+    }
   };
-  double seconds_a_step = 0;       // not known before the first trial
-  std::map<int, double> as_it_is;  // PSNR of `trial` after so many steps
   for (Verdict& verdict : verdicts) {
     const int steps = StepsOf(verdict.effect);
     const int needed = as_it_is.contains(steps) ? steps : 2 * steps;
-    if (!IsOpen(verdict, named) || !allowance.Has(needed, seconds_a_step)) continue;
-    if (seconds_a_step == 0) seconds_a_step = SecondsOfAStep(trial, scene, data);
-    if (!allowance.Has(needed, seconds_a_step)) continue;
+    if (!IsOpen(verdict, named)) continue;
+    if (!allowance.Has(needed, std::max(seconds_a_step, kFastest))) continue;
+    if (seconds_a_step == 0 && allowance.IsByTheClock()) {
+      seconds_a_step = SecondsOfAStep(trial, scene, data);
+      if (!allowance.Has(needed, seconds_a_step)) continue;
+    }
     const bool is_on = Simulates(trial, verdict.effect);
     const Config other = WithEffect(trial, verdict.effect, is_on ? "null" : "{}");
     if (!as_it_is.contains(steps)) as_it_is[steps] = psnr_of(trial, steps);
     const double as_before = as_it_is[steps], otherwise = psnr_of(other, steps);
     const double with = is_on ? as_before : otherwise, without = is_on ? otherwise : as_before;
+    if (!std::isfinite(with - without)) {
+      spdlog::warn("effects: a trial of {} came to no number, so it stays as configured",
+                   verdict.effect);
+      continue;
+    }
     // What is configured stands unless the other is clearly better.
     verdict = Tried(verdict, with, without, is_on ? -kWorthIt : kWorthIt);
     if (verdict.on != is_on) {
@@ -96,7 +115,7 @@ EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
     trials.assignments.push_back(verdict.assignment);
     fmt::print("{}", RowOf(verdict));
   }
-  if (as_it_is.empty()) return trials;
+  if (seconds_a_step == 0) return trials;
   trials.seconds = allowance.Seconds();
   fmt::print("tried for {:.1f} s\n", trials.seconds);
   std::fflush(stdout);

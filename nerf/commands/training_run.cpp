@@ -160,6 +160,8 @@ void StartRun(const TrainArguments& arguments, int threads, const Stopwatch& wat
   SceneFacts scene = FactsOf(data, normalized_from_world);
   if (effects.inspect) {
     scene.exposure_stops = choice.StopsOfTrained(found, data);
+    if (scene.has_alpha) choice.HeedAlpha();
+    config = configured(arguments.preset);
     const bool tries_depth = choice.IsOpen("depth");
     if (tries_depth) AddSeenPoints(found, normalized_from_world, data);
     choice.Try(config, scene, config.train.time_budget - watch.Seconds(), data);

@@ -101,12 +101,15 @@ void PackIntervalsOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions
                         std::span<const float> edges, std::span<float> position, std::span<float> t,
                         std::span<float> dt) {
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
-  const bool contracted = options.IsUnbounded();  // in the unit ball nothing is
+  // In the unit ball nothing is contracted. A ray that misses it has intervals of no length where
+  // it begins, which may be anywhere: encodings want places inside.
+  const auto in_space = [&](const Eigen::Vector3f& x) -> Eigen::Vector3f {
+    return options.IsUnbounded() ? Contract(x) : x.cwiseMax(-1.0f).cwiseMin(1.0f);
+  };
   for (std::size_t i = 0; i < t.size(); ++i) {
     t[i] = 0.5f * (edges[i] + edges[i + 1]);
     dt[i] = edges[i + 1] - edges[i];
-    const Eigen::Vector3f x = origin + t[i] * direction;
-    const Eigen::Vector3f x_in_cube = UnitCubeFromContracted(contracted ? Contract(x) : x);
+    const Eigen::Vector3f x_in_cube = UnitCubeFromContracted(in_space(origin + t[i] * direction));
     std::copy_n(x_in_cube.data(), 3, &position[3 * i]);
   }
 }

@@ -24,6 +24,9 @@ View ColumnsOf(const View& view, int left, int right) {
   part.normalized_from_camera = view.normalized_from_camera;
   part.lens = view.lens;
   part.seed = view.seed;
+  const auto share = static_cast<std::size_t>(view.Held() * width / all + 1);
+  part.whole.reserve(share);
+  part.rgba.reserve(4 * share);
   for (std::int64_t k = 0; k < view.Held(); ++k) {
     const std::int64_t pixel = place(view.PixelOf(k));
     if (pixel < 0) continue;

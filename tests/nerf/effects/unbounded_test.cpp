@@ -71,8 +71,9 @@ TEST(Bounded, MeansTheSameInBothEngines) {
     e.march = Bounded();
     e.march.steps_per_unit = 24;
     e.Make(50, with_proposal);
-    // Some rays miss the ball.
-    for (int r = 0; r < 50; r += 7) e.batch.rays.origin[3 * r] += 3;
+    // Some rays miss the ball, on any side of it and farther out than contracted space reaches.
+    for (int r = 0; r < 50; r += 7)
+      e.batch.rays.origin[3 * r + r % 3] += r % 2 == 0 ? 3.0f : -30.0f;
     e.ExpectTheSame();
   }
 }
