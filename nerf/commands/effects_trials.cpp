@@ -51,10 +51,21 @@ class Allowance {
   Stopwatch watch_;
 };
 
+// A training that comes to no number is worth nothing.
+TrialResult TryIt(const Config& trial, const SceneFacts& scene, const Dataset& data, int steps) {
+  try {
+    return TryConfig(trial, scene, data, steps);
+  } catch (const NonFiniteError&) {
+    TrialResult lost;
+    lost.psnr = -std::numeric_limits<double>::infinity();
+    return lost;
+  }
+}
+
 // Seconds that a step of a trial will take, with its share of all else, by the first ones.
 double SecondsOfAStep(const Config& trial, const SceneFacts& scene, const Dataset& data) {
   constexpr int kFirst = 10, kShortest = 200;
-  const TrialResult result = TryConfig(trial, scene, data, kFirst);
+  const TrialResult result = TryIt(trial, scene, data, kFirst);
   const double all_else = result.seconds - kFirst * result.seconds_a_step;
   return result.seconds_a_step + all_else / kShortest;
 }
@@ -79,19 +90,17 @@ EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
   std::map<int, double> as_it_is;  // PSNR of `trial` after so many steps
   const auto psnr_of = [&](const Config& tried, int steps) {
     allowance.Count(steps);
-    try {
-      const TrialResult result = TryConfig(tried, scene, data, steps);
-      seconds_a_step = result.seconds / steps;
-      return result.psnr;
-    } catch (const NonFiniteError&) {  // a training that goes wrong is worth nothing
-      return -std::numeric_limits<double>::infinity();
-    }
+    const TrialResult result = TryIt(tried, scene, data, steps);
+    if (result.seconds > 0) seconds_a_step = result.seconds / steps;
+    return result.psnr;
   };
+  bool has_begun = false;
   for (Verdict& verdict : verdicts) {
     const int steps = StepsOf(verdict.effect);
     const int needed = as_it_is.contains(steps) ? steps : 2 * steps;
     if (!IsOpen(verdict, named)) continue;
     if (!allowance.Has(needed, std::max(seconds_a_step, kFastest))) continue;
+    has_begun = true;
     if (seconds_a_step == 0 && allowance.IsByTheClock()) {
       seconds_a_step = SecondsOfAStep(trial, scene, data);
       if (!allowance.Has(needed, seconds_a_step)) continue;
@@ -115,7 +124,7 @@ EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
     trials.assignments.push_back(verdict.assignment);
     fmt::print("{}", RowOf(verdict));
   }
-  if (seconds_a_step == 0) return trials;
+  if (!has_begun) return trials;
   trials.seconds = allowance.Seconds();
   fmt::print("tried for {:.1f} s\n", trials.seconds);
   std::fflush(stdout);
