@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double kCoplanar = 0.02;          // smallest over largest singular value
 constexpr double kLeastDeterminant = 1e-4;  // of a triple of unit directions
 constexpr int kRefits = 8;
-constexpr double kReach = 2;  // of the biweight, in tolerances
+constexpr double kBiweightReach = 2;  // of the biweight, in tolerances
 
 SurfaceEstimate EstimateFrom(const Vector3d& g) {
   SurfaceEstimate estimate;
@@ -164,7 +164,7 @@ SurfaceEstimate PhotometricSolver::Robust(std::span<const double> observations) 
   if (!(least < std::numeric_limits<double>::infinity())) return {};
 
   // From what that triple explains to all that agrees with it, without a hard edge between.
-  const double reach = kReach * tolerance;
+  const double reach = kBiweightReach * tolerance;
   for (int refit = 0; refit < kRefits; ++refit) {
     NormalEquations equations;
     for (const int i : known) {

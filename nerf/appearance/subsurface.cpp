@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 using std::numbers::pi;
 constexpr int kPoints = 1000;
-constexpr double kReach = 2.5;  // of a lookup, in distances between points
+constexpr double kLookupReach = 2.5;  // of a lookup, in distances between points
 
 // Mean of R_d over a patch, a disc of radius rho about the point itself: the profile is steep
 // there, and a midpoint would not see it. Rings of equal area, each met in its middle.
@@ -77,7 +77,7 @@ Color SubsurfaceSphere::UniformReflectance() const {
 Color SubsurfaceSphere::Exitance::At(const Vector3d& x_in_world) const {
   // A smooth mean of the points nearby: weights (1 - d^2 / reach^2)^2, with d^2 = 2 - 2 cos.
   const Vector3d normal = (x_in_world - sphere_->sphere_.center).normalized();
-  const double reach2 = kReach * kReach * 4 * pi / kPoints;
+  const double reach2 = kLookupReach * kLookupReach * 4 * pi / kPoints;
   Color sum = Color::Zero();
   double weights = 0;
   for (std::size_t i = 0; i < values_.size(); ++i) {

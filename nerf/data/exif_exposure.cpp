@@ -10,7 +10,7 @@ namespace nerf {
 namespace {
 
 // Cameras round the APEX forms: more than this, in stops, is a contradiction.
-constexpr double kRounding = 1.0;
+constexpr double kContradiction = 1.0;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
@@ -27,7 +27,7 @@ Quantity FromBoth(const char* plain_name, float plain, double stops_of_plain, co
   }
   if (std::isnan(plain) && std::isnan(apex)) return {};
   if (std::isnan(plain)) return {stops_of_apex, ""};
-  if (!std::isnan(apex) && std::fabs(stops_of_plain - stops_of_apex) > kRounding) {
+  if (!std::isnan(apex) && std::fabs(stops_of_plain - stops_of_apex) > kContradiction) {
     return {stops_of_plain, fmt::format("{} {} and {} {} contradict each other", plain_name, plain,
                                         apex_name, apex)};
   }

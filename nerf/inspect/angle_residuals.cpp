@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 constexpr double kDegreesEach = 5;
 constexpr int kAngles = 36;  // up to 180 degrees
-constexpr int kFewestAngles = 5, kFewestSightings = 30;
+constexpr int kFewestAngles = 5, kFewestOfAngle = 30;
 
 // From a point to the camera of a photograph that sees it.
 Vector3d DirectionToCamera(const sfm::PosedImages& posed, const Sighting& s) {
@@ -43,7 +43,7 @@ std::vector<AngleResiduals> ResidualsByAngle(const sfm::PosedImages& posed,
   std::vector<AngleResiduals> all;
   for (int at = 0; at < kAngles; ++at) {
     const auto sightings = static_cast<int>(residuals[at].size());
-    if (sightings < kFewestSightings) continue;
+    if (sightings < kFewestOfAngle) continue;
     AngleResiduals one{(at + 0.5) * kDegreesEach, sightings};
     for (int q = 0; q < 3; ++q) one.quartiles[q] = Quantile(residuals[at], 0.25 * (q + 1));
     all.push_back(one);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kFewestViews = 5;  // of a point; fewer say too little
 
 // A normal distribution's standard deviation over its median absolute value.
-constexpr double kDeviation = 1.48;
+constexpr double kDeviationOfMedian = 1.48;
 
 // From which on a scene calls for an effect.
 constexpr double kExposureStops = 0.1;   // standard deviation over the photographs
@@ -40,7 +40,7 @@ Verdict JudgeView(const TrackColors& colors, const PhotographFit& fit) {
   for (auto& [point, spread] : of_point) {
     if (spread.left_over.size() < kFewestViews) continue;
     ++judged;
-    const double change = kDeviation * Quantile(spread.left_over, 0.5);
+    const double change = kDeviationOfMedian * Quantile(spread.left_over, 0.5);
     if (change > kFlatChange + Quantile(spread.contrast, 0.5)) ++changing;
   }
   if (judged < kFewestPoints) {
@@ -70,7 +70,7 @@ Verdict JudgeExposure(const std::vector<double>& stops, const char* where) {
 Verdict JudgePassers(const TrackColors& colors, const PhotographFit& fit) {
   std::vector<double> usual;
   for (const auto& left : fit.left_over) usual.push_back(std::fabs(Luminance(left)));
-  const double noise = kDeviation * Quantile(usual, 0.5);
+  const double noise = kDeviationOfMedian * Quantile(usual, 0.5);
   const double limit = std::max(kSomethingElse, 4 * noise);
   std::size_t other = 0;
   for (const Sighting& s : colors.unseen) {

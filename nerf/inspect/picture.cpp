@@ -13,8 +13,9 @@ namespace nerf {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 480;
-constexpr int kLeft = 70, kTop = 50, kBottom = 60, kGap = 90, kRight = 20;  // about the two sides
-constexpr int kSideWidth = (kWidth - kLeft - kGap - kRight) / 2;
+constexpr int kLeft = 70, kTop = 50, kBottom = 60, kMiddle = 90,
+              kRight = 20;  // about the two sides
+constexpr int kSideWidth = (kWidth - kLeft - kMiddle - kRight) / 2;
 constexpr int kSideHeight = kHeight - kTop - kBottom;
 constexpr int kTitle = 16, kLabel = 13;                      // sizes of letters, pixels
 constexpr int kLines = 4;                                    // of the scale
@@ -103,7 +104,7 @@ void DrawResiduals(const std::vector<AngleResiduals>& residuals, Image& image) {
     largest = std::max(largest, r.quartiles[2]);
     widest = std::max(widest, r.degrees + 2.5);
   }
-  Side side(image, kLeft + kSideWidth + kGap, 0, RoundedUp(largest));
+  Side side(image, kLeft + kSideWidth + kMiddle, 0, RoundedUp(largest));
   side.Letters("change of points over what texture explains: median, quartiles",
                "degrees between the view and where the point is seen from on average");
   if (residuals.empty()) return side.Nothing("no sparse points to tell from");

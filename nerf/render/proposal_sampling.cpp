@@ -12,7 +12,7 @@
 namespace nerf {
 namespace {
 
-constexpr std::int64_t kRaysWorthAThread = 16;
+constexpr std::int64_t kProposalsWorthAThread = 16;
 
 // Sums a loss of the weights of each ray. `of_ray(r, weights, dL_dweights)` writes the gradient.
 struct LossOfWeightsFunction : torch::autograd::Function<LossOfWeightsFunction> {
@@ -23,7 +23,7 @@ struct LossOfWeightsFunction : torch::autograd::Function<LossOfWeightsFunction> 
     const auto rays = static_cast<std::int64_t>(ray_begin->size()) - 1;
     std::vector<double> loss(rays);
     AT_DISPATCH_FLOATING_TYPES(weights.scalar_type(), "loss_of_weights", [&] {
-      ParallelFor(rays, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+      ParallelFor(rays, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
         for (std::int64_t r = first; r < last; ++r) {
           const std::int64_t begin = (*ray_begin)[r], count = (*ray_begin)[r + 1] - begin;
           loss[r] = (*of_ray)(r, Span<const scalar_t>(weights).subspan(begin, count),
@@ -64,7 +64,7 @@ PackedSamples PackIntervals(const RayBatch& rays, const MarchOptions& march,
   out.position.resize(3 * count * intervals);
   out.t.resize(count * intervals);
   out.dt.resize(count * intervals);
-  ParallelFor(count, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+  ParallelFor(count, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
       PackIntervalsOfRay(rays, r, march,
                          std::span(edges).subspan(r * (intervals + 1), intervals + 1),
@@ -82,7 +82,7 @@ ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
   const std::int64_t count = rays.Size(), coarse = options.intervals, fine = options.samples;
   ProposedSamples out;
   out.coarse_edges.resize(count * (coarse + 1));
-  ParallelFor(count, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+  ParallelFor(count, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
       EqualIntervals(rays, r, march,
                      std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1));
@@ -101,7 +101,7 @@ ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
   const torch::Tensor weights = out.coarse_weights.detach().to(torch::kFloat).contiguous();
   const auto trust = static_cast<float>(proposal.Trust());
   out.edges.resize(count * (fine + 1));
-  ParallelFor(count, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+  ParallelFor(count, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
       CutByWeights(std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1),
                    Span<const float>(weights).subspan(r * coarse, coarse), trust,

@@ -42,7 +42,7 @@ struct Contracted {
 };
 
 // The same in the unit ball, where nothing is contracted.
-struct Ball {
+struct UnitBall {
   static float Speed(const Eigen::Vector3f&, const Eigen::Vector3f&) { return 1; }
   static float FastestSpeed(const Eigen::Vector3f&) { return 1; }
   static Eigen::Vector3f InCube(const Eigen::Vector3f& x) { return UnitCubeFromContracted(x); }
@@ -105,7 +105,7 @@ RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& op
 void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
               const MarchOptions& options, RaySamples& out) {
   if (options.IsUnbounded()) return March<Contracted>(rays, r, grid, options, out);
-  March<Ball>(rays, r, grid, options, out);
+  March<UnitBall>(rays, r, grid, options, out);
 }
 
 void MarchOptions::Check() const {
