@@ -92,7 +92,7 @@ void EffectsChoice::Try(const Config& config, const SceneFacts& scene, double se
   trial_seconds_ = trials.seconds;
   std::vector<std::string> open;
   for (const Verdict& v : inspection_.verdicts) {
-    if (IsChosen(v) && v.decided && nerf::IsOpen(v, named_)) open.push_back(v.effect);
+    if (IsChosen(v) && nerf::IsOpen(v, named_)) open.push_back(v.effect);
   }
   if (!open.empty()) {
     fmt::print("not sure, and so as configured: {}\n", fmt::join(open, ", "));

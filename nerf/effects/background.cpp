@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "nerf/effects/background_start.h"
 #include "nerf/field/activations.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/parallel.h"
@@ -50,10 +51,10 @@ BackgroundMap Background::Map() const {
   return {rows_, encoding_, {values.begin(), values.end()}};
 }
 
-void Background::Start(std::span<const float> direction, std::span<const float> rgb) {
+void Background::Start(const TargetBatch& batch) {
   const torch::NoGradGuard no_grad;
   BackgroundMap map = Map();
-  map.SetToMedians(direction, rgb);
+  StartFromPhotographs(batch.photograph, batch.rays.direction, batch.rgb, map);
   Raw().copy_(TensorOf(map.raw, {table_.size(0), 3}, torch::kFloat));
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "nerf/data/pixel_sampler.h"
 #include "nerf/effects/background_map.h"
 #include "nerf/libtorch.h"
 #include "nerf/render/ray_renderer.h"
@@ -24,9 +25,9 @@ class Background : public torch::nn::Module {
   // As it is now.
   BackgroundMap Map() const;
 
-  // What training starts from: BackgroundMap::SetToMedians. A map that is right from the start
-  // leaves nothing for fog before it to explain.
-  void Start(std::span<const float> direction, std::span<const float> rgb);
+  // What training starts from: StartFromPhotographs. A map that is right from the start leaves
+  // nothing for fog before it to explain.
+  void Start(const TargetBatch& batch);
 
   // Adds to the gradient of the map.
   //   dL_draw  [rows, 2 rows, 3]

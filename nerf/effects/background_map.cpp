@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "nerf/kernels/activations.h"
 #include "sfm/input_error.h"
@@ -13,9 +12,6 @@ namespace {
 
 // As TruncatedExp of the field holds its argument.
 constexpr float kExpLimit = 15.0f;
-
-// Colours nearer to 0 or 1 would be infinite before the activation.
-constexpr float kFaintest = 0.01f;
 
 }  // namespace
 
@@ -43,61 +39,6 @@ BackgroundMap::Texels BackgroundMap::TexelsOf(std::span<const float, 3> directio
     texels.weight[k] = (right ? across : 1 - across) * (below ? down : 1 - down);
   }
   return texels;
-}
-
-void BackgroundMap::SetToMedians(std::span<const float> direction, std::span<const float> rgb) {
-  const std::int64_t columns = 2 * rows, texels = rows * columns;
-  std::vector<std::vector<std::size_t>> shown(texels);  // rays that show it
-  for (std::size_t r = 0; r < direction.size() / 3; ++r) {
-    const Texels around = TexelsOf(direction.subspan(3 * r).first<3>(), rows);
-    const auto nearest = std::ranges::max_element(around.weight) - around.weight.begin();
-    shown[around.index[nearest]].push_back(r);
-  }
-  raw.assign(3 * texels, 0.0f);
-  std::vector<std::int64_t> open;  // texels without a colour
-  std::vector<bool> known(texels);
-  for (std::int64_t i = 0; i < texels; ++i) {
-    std::vector<std::size_t>& rays = shown[i];
-    known[i] = !rays.empty();
-    if (rays.empty()) open.push_back(i);
-    for (int c = 0; c < 3 && known[i]; ++c) {
-      const auto middle = rays.begin() + static_cast<std::ptrdiff_t>(rays.size() / 2);
-      std::ranges::nth_element(rays, middle, {}, [&](std::size_t r) { return rgb[3 * r + c]; });
-      const float color = rgb[3 * *middle + c];
-      const float held = std::clamp(color, kFaintest, 1 - kFaintest);
-      raw[3 * i + c] = encoding == ColorEncoding::kSrgb ? std::log(held / (1 - held))
-                                                        : std::log(std::max(color, kFaintest));
-    }
-  }
-  // Colours grow into what nobody saw, a ring of texels at a time.
-  while (!open.empty() && std::ssize(open) < texels) {
-    std::vector<std::int64_t> still;
-    std::vector<std::pair<std::int64_t, std::array<float, 3>>> found;
-    for (const std::int64_t i : open) {
-      const std::int64_t row = i / columns, column = i % columns;
-      std::array<float, 3> sum{};
-      float count = 0;
-      for (const std::int64_t beside :
-           {row * columns + (column + 1) % columns,
-            row * columns + (column + columns - 1) % columns,
-            std::max<std::int64_t>(row - 1, 0) * columns + column,
-            std::min<std::int64_t>(row + 1, rows - 1) * columns + column}) {
-        if (!known[beside]) continue;
-        for (int c = 0; c < 3; ++c) sum[c] += raw[3 * beside + c];
-        ++count;
-      }
-      if (count == 0) {
-        still.push_back(i);
-        continue;
-      }
-      found.push_back({i, {sum[0] / count, sum[1] / count, sum[2] / count}});
-    }
-    for (const auto& [i, color] : found) {
-      known[i] = true;
-      std::ranges::copy(color, raw.begin() + 3 * i);
-    }
-    open = std::move(still);
-  }
 }
 
 void BackgroundMap::Radiance(std::span<const float> direction, std::span<float> rgb) const {

@@ -95,7 +95,7 @@ void Trainer::State::StartBackground() {
   const std::int64_t rows = model.config.effects.background->resolution;
   const TargetBatch batch =
       PixelSampler(data.train).Sample(2 * rows * rows * kRaysOfATexel, Options().seed, 0);
-  model.background->Start(batch.rays.direction, batch.rgb);
+  model.background->Start(batch);
 }
 
 // A step with its book-keeping.

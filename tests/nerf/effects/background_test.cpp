@@ -152,38 +152,5 @@ TEST(Background, IsRefusedForPhotographsWithAlpha) {
   EXPECT_THAT(test::InputErrorOf([&] { MakeModel(config, scene); }), testing::HasSubstr("alpha"));
 }
 
-TEST(BackgroundMap, StartsAsTheMedianOfWhatIsShown) {
-  // Of 500 directions of the upper half each is shown three times, once behind somebody.
-  std::vector<float> direction, rgb;
-  for (int i = 0; i < 500; ++i) {
-    const float z = 0.05f + 0.94f * static_cast<float>(i) / 500, a = 2.4f * static_cast<float>(i);
-    const float r = std::sqrt(1 - z * z);
-    for (const float shown : {0.7f, 0.1f, 0.7f}) {
-      direction.insert(direction.end(), {r * std::cos(a), r * std::sin(a), z});
-      rgb.insert(rgb.end(), {shown, 0.5f, shown == 0.7f ? 1.0f : 0.0f});
-    }
-  }
-  BackgroundMap map{8, ColorEncoding::kSrgb, {}};
-  map.SetToMedians(direction, rgb);
-  ASSERT_EQ(map.raw.size(), 3u * 8 * 16);
-  std::vector<float> seen(direction.size());
-  map.Radiance(direction, seen);
-  for (std::size_t r = 0; r < seen.size(); r += 3) {
-    EXPECT_NEAR(seen[r], 0.7f, 1e-3f);
-    EXPECT_NEAR(seen[r + 1], 0.5f, 1e-3f);
-    EXPECT_NEAR(seen[r + 2], 0.99f, 1e-3f);  // 1 is at infinity before the sigmoid
-  }
-  // What nobody looked at goes on with what is beside it.
-  std::vector<float> below(3);
-  map.Radiance(std::vector<float>{0.6f, 0, -0.8f}, below);
-  EXPECT_NEAR(below[0], 0.7f, 1e-3f);
-}
-
-TEST(BackgroundMap, StaysGreyWhereNothingIsShownAtAll) {
-  BackgroundMap map{8, ColorEncoding::kLinear, {}};
-  map.SetToMedians({}, {});
-  EXPECT_EQ(map.raw, std::vector<float>(3 * 8 * 16, 0.0f));
-}
-
 }  // namespace
 }  // namespace nerf

@@ -1,0 +1,129 @@
+#include "nerf/effects/background_start.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+namespace nerf {
+namespace {
+
+struct Rays {
+  std::vector<std::int64_t> photograph;
+  std::vector<float> direction, rgb;
+};
+
+// The direction at an angle from the zenith and a longitude, parts of their ranges.
+std::array<float, 3> DirectionAt(double down, double around) {
+  const double polar = down * std::numbers::pi, longitude = (2 * around - 1) * std::numbers::pi;
+  return {static_cast<float>(std::sin(polar) * std::cos(longitude)),
+          static_cast<float>(std::sin(polar) * std::sin(longitude)),
+          static_cast<float>(std::cos(polar))};
+}
+
+// What a photograph shows of a belt about the horizon, four rays to each texel of a map and more.
+void Show(std::int64_t photograph, double from, double to, int rows,
+          const std::function<float(double down, double around)>& shade, Rays& rays) {
+  const int down_steps = static_cast<int>(2 * rows * (to - from)), around_steps = 4 * rows;
+  for (int i = 0; i < down_steps; ++i) {
+    for (int k = 0; k < around_steps; ++k) {
+      const double down = from + (to - from) * (i + 0.5) / down_steps;
+      const double around = (k + 0.5) / around_steps;
+      const auto direction = DirectionAt(down, around);
+      rays.photograph.push_back(photograph);
+      rays.direction.insert(rays.direction.end(), direction.begin(), direction.end());
+      rays.rgb.insert(rays.rgb.end(), 3, shade(down, around));
+    }
+  }
+}
+
+float SeenAt(const BackgroundMap& map, double down, double around) {
+  std::vector<float> rgb(3);
+  map.Radiance(DirectionAt(down, around), rgb);
+  return rgb[0];
+}
+
+BackgroundMap Started(const Rays& rays, int rows, ColorEncoding encoding = ColorEncoding::kSrgb) {
+  BackgroundMap map{rows, encoding, {}};
+  StartFromPhotographs(rays.photograph, rays.direction, rays.rgb, map);
+  return map;
+}
+
+float Bright(double, double) { return 0.7f; }
+float Dark(double, double) { return 0.1f; }
+
+TEST(BackgroundStart, IsWhatMostPhotographsAgreeOn) {
+  for (const int rows : {8, 64}) {
+    for (const auto encoding : {ColorEncoding::kSrgb, ColorEncoding::kLinear}) {
+      // Who passes by is another in each of the others.
+      Rays rays;
+      for (const int sky : {0, 3}) Show(sky, 0, 1, rows, Bright, rays);
+      for (const int other : {1, 2, 4}) {
+        Show(
+            other, 0, 1, rows, [&](double, double) { return 0.15f * static_cast<float>(other); },
+            rays);
+      }
+      const BackgroundMap map = Started(rays, rows, encoding);
+      for (const double down : {0.2, 0.5, 0.8}) EXPECT_NEAR(SeenAt(map, down, 0.3), 0.7f, 1e-3f);
+    }
+  }
+}
+
+TEST(BackgroundStart, HoldsWhatIsSmallerThanTexelsOfACoarseMap) {
+  const auto clouds = [](double, double around) {
+    return std::fmod(around * 32, 1.0) < 0.5 ? 0.4f : 0.6f;
+  };
+  Rays rays;
+  for (const int photograph : {0, 1}) Show(photograph, 0.3, 0.7, 64, clouds, rays);
+  const BackgroundMap map = Started(rays, 64);
+  for (const double cloud : {3.0, 11.0, 20.0}) {
+    EXPECT_NEAR(SeenAt(map, 0.5, (cloud + 0.25) / 32), 0.4f, 0.02f);
+    EXPECT_NEAR(SeenAt(map, 0.5, (cloud + 0.75) / 32), 0.6f, 0.02f);
+  }
+}
+
+// Where one photograph alone looks, something before the sky would be painted on it.
+TEST(BackgroundStart, GoesOnWithTheSkyWhereOnePhotographAloneLooks) {
+  for (const int rows : {16, 64}) {
+    Rays rays;
+    for (const int photograph : {0, 1}) Show(photograph, 0, 0.5, rows, Bright, rays);
+    Show(2, 0.5, 0.7, rows, Dark, rays);
+    const BackgroundMap map = Started(rays, rows);
+    for (const double down : {0.6, 0.9}) EXPECT_NEAR(SeenAt(map, down, 0.3), 0.7f, 1e-3f);
+  }
+}
+
+TEST(BackgroundStart, IsTheMedianWhereExposuresDiffer) {
+  Rays rays;
+  for (const int photograph : {0, 1, 2}) {
+    Show(
+        photograph, 0, 1, 64,
+        [&](double, double) { return 0.2f + 0.3f * static_cast<float>(photograph); }, rays);
+  }
+  EXPECT_NEAR(SeenAt(Started(rays, 64), 0.4, 0.6), 0.5f, 1e-3f);
+}
+
+TEST(BackgroundStart, StaysFiniteOfBlackAndWhite) {
+  for (const float shade : {0.0f, 1.0f}) {
+    Rays rays;
+    for (const int photograph : {0, 1}) {
+      Show(
+          photograph, 0, 1, 8, [&](double, double) { return shade; }, rays);
+    }
+    for (const float raw : Started(rays, 8).raw) EXPECT_LT(std::fabs(raw), 10);
+  }
+}
+
+TEST(BackgroundStart, StaysGreyWhereNothingIsShownAtAll) {
+  for (const int rows : {8, 64}) {
+    EXPECT_EQ(Started({}, rows, ColorEncoding::kLinear).raw,
+              std::vector<float>(6 * rows * rows, 0.0f));
+  }
+}
+
+}  // namespace
+}  // namespace nerf
