@@ -66,12 +66,14 @@ TrialResult TryIt(const Config& trial, const SceneFacts& scene, const Dataset& d
   }
 }
 
-// Seconds that a step of a trial will take, with its share of all else, by the first ones.
-double SecondsOfAStep(const Config& trial, const SceneFacts& scene, const Dataset& data) {
-  constexpr int kFirst = 10, kShortest = 200;
-  const TrialResult result = TryIt(trial, scene, data, kFirst);
-  const double all_else = result.seconds - kFirst * result.seconds_a_step;
-  return result.seconds_a_step + all_else / kShortest;
+// By its first steps; 0 where they come to no number, which the trial will find out, too.
+double SecondsOfItsSteps(const Config& trial, const SceneFacts& scene, const Dataset& data,
+                         int steps) {
+  try {
+    return SecondsOfAStep(trial, scene, data, steps);
+  } catch (const NonFiniteError&) {
+    return 0;
+  }
 }
 
 }  // namespace
@@ -107,7 +109,7 @@ EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
     if (!allowance.Has(needed, std::max(seconds_a_step, kFastest), share)) continue;
     has_begun = true;
     if (seconds_a_step == 0 && allowance.IsByTheClock()) {
-      seconds_a_step = SecondsOfAStep(trial, scene, data);
+      seconds_a_step = SecondsOfItsSteps(trial, scene, data, steps);
       if (!allowance.Has(needed, seconds_a_step, share)) continue;
     }
     const bool is_on = Simulates(trial, verdict.effect);

@@ -25,8 +25,8 @@ bool IsOpen(const Verdict& verdict, const std::set<std::string>& named);
 // Decides what the evidence left open by paired trials, with the effect and without it: short
 // trainings, measured on halves of some photographs, which are held out meanwhile (HeldOutHalves).
 // Writes into the verdicts what came out, and prints it. All trials together take no more than a
-// seventh of the training; where that is too short, or photographs are too few, what is open stays
-// as configured.
+// seventh of the training, and where nothing tells no more than a twentieth; where that is too
+// short, or photographs are too few, what is open stays as configured.
 //   verdicts      those that are open (IsOpen) are tried
 //   seconds_left  of the time budget, where there is one
 //   data          is as it was afterwards; has the points that depth learns from where it is open

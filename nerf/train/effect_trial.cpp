@@ -44,6 +44,17 @@ TrialResult TryConfig(Config config, const SceneFacts& scene, const Dataset& dat
   return result;
 }
 
+double SecondsOfAStep(Config config, const SceneFacts& scene, const Dataset& data, int steps) {
+  config.train.steps = steps;
+  config.train.time_budget = 0;
+  const Stopwatch watch;
+  Trainer trainer(config, scene, data, {});
+  const double of_step = trainer.TrySteps(std::min(kTimed, steps));
+  // Beginning, and measuring at the end, which takes about as long as these steps did.
+  const double all_else = watch.Seconds();
+  return of_step + all_else / steps;
+}
+
 Config WithEffect(const Config& config, const std::string& effect, const std::string& setting) {
   nlohmann::json json = JsonFromConfig(config);
   json["effects"][effect] = nlohmann::json::parse(setting);

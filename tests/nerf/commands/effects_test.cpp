@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "nerf/data/image_io.h"
 #include "sfm/atomic_file.h"
@@ -22,7 +21,6 @@ using test::RunNerf;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-using testing::UnorderedElementsAre;
 
 // Small captures that call for one effect each, and tiny runs on them.
 class EffectsCommands : public testing::Test {
@@ -121,51 +119,6 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   };
   EXPECT_NE(at("mean", ""), at("as", "--exposure-of view_002.png"));
   ExpectRefused("render " + Path("auto") + " --exposure-of nobody.png", HasSubstr("nobody.png"));
-}
-
-TEST_F(EffectsCommands, WhatTheEvidenceLeavesOpenIsTried) {
-  // Without sparse points nothing tells of the exposures.
-  const std::string poses = Path("exposure/truth/transforms.json");
-  const auto run = RunNerf("train " + poses + " -o " + Path("tried") +
-                           " --threads 2 --set data.test_every=0 --set train.validate_every=20 "
-                           "--target-psnr 1 --set encoding.log2_table_size=12 "
-                           "--set field.hidden_width=16");
-  ASSERT_EQ(run.exit_status, 0) << run.output;
-  EXPECT_THAT(run.output,
-              AllOf(HasSubstr("tried: "), HasSubstr("dB with it"), HasSubstr("tried for")));
-  EXPECT_GT(Json("tried/effects.json").at("trial_seconds"), 0);
-  bool seen = false;
-  const nlohmann::json verdicts = Json("tried/effects.json").at("verdicts");
-  for (const auto& verdict : verdicts) {
-    if (verdict.at("effect") != "exposure") continue;
-    seen = true;
-    EXPECT_TRUE(verdict.at("decided"));
-    EXPECT_EQ(verdict.at("on"), !Json("tried/config.json").at("effects").at("exposure").is_null());
-  }
-  EXPECT_TRUE(seen);
-}
-
-// Poses and the points that depth learns from, which trials alone make use of.
-TEST_F(EffectsCommands, PosesAndDepthInBetweenAreTried) {
-  const auto made = RunNerf("sample " + Path("wrong") +
-                            " --calls-for poses --views 18 --width 96 --height 72 --samples 2");
-  ASSERT_EQ(made.exit_status, 0) << made.output;
-  const auto run = RunNerf("train " + Path("wrong/truth/sparse") + " -o " + Path("wrong/run") +
-                           " --threads 2 --effects -view --set data.test_every=0 "
-                           "--set train.validate_every=20 --target-psnr 1 "
-                           "--set encoding.log2_table_size=12 --set field.hidden_width=16");
-  ASSERT_EQ(run.exit_status, 0) << run.output;
-  const nlohmann::json effects = Json("wrong/run/config.json").at("effects");
-  std::vector<std::string> tried;
-  const nlohmann::json verdicts = Json("wrong/run/effects.json").at("verdicts");
-  for (const auto& verdict : verdicts) {
-    const std::string evidence = verdict.at("evidence");
-    if (evidence.find("tried: ") == std::string::npos) continue;
-    tried.push_back(verdict.at("effect"));
-    EXPECT_EQ(verdict.at("on"), !effects.at(verdict.at("effect")).is_null());
-  }
-  EXPECT_THAT(tried, UnorderedElementsAre("depth", "poses")) << run.output;
-  EXPECT_EQ(fs::exists(Path("wrong/run/sparse")), !effects.at("depth").is_null());
 }
 
 // A pixel of each photograph that is a little transparent: not enough to be told by inspect, too

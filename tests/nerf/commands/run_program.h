@@ -1,10 +1,16 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <string>
+#include <thread>
 
 namespace nerf::test {
 
@@ -27,6 +33,24 @@ inline ProgramResult RunNerf(const std::string& arguments, const std::string& be
   const int status = pclose(pipe);
   result.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return result;
+}
+
+// Runs the program until a file is there, and ends it with SIGKILL.
+inline void KillOnce(const std::filesystem::path& file, const std::string& arguments) {
+  const std::string command = "exec " + std::string(NERF_PROGRAM) + " " + arguments;
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c", (command + " >/dev/null 2>&1").c_str(), nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  while (!std::filesystem::exists(file) && waitpid(child, &status, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "the run ended before it could be killed";
 }
 
 }  // namespace nerf::test

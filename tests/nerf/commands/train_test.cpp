@@ -1,17 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spdlog/fmt/fmt.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 
 #include "sfm/atomic_file.h"
 #include "tests/nerf/commands/run_program.h"
@@ -53,21 +48,7 @@ class TrainCommand : public testing::Test {
 
   // A run that SIGKILL ended as soon as its first checkpoint stood.
   static void KillAtFirstCheckpoint(const std::string& run) {
-    const std::string command = std::string(NERF_PROGRAM) + " " + Arguments(run);
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      execl("/bin/sh", "sh", "-c", ("exec " + command + " >/dev/null 2>&1").c_str(), nullptr);
-      _exit(127);
-    }
-    const fs::path checkpoint = Path(run + "/checkpoint.nerf");
-    int status = 0;
-    while (!fs::exists(checkpoint) && waitpid(child, &status, WNOHANG) == 0) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    kill(child, SIGKILL);
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "the run ended before it could be killed";
+    test::KillOnce(Path(run + "/checkpoint.nerf"), Arguments(run));
   }
 
   // A refusal: one line, exit status 2, naming what is wrong.
