@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "nerf/config_overlay.h"
 #include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
 
@@ -66,28 +67,6 @@ namespace {
 
 constexpr char kParentKey[] = "parent";
 
-// A whole number may stand where a real one is meant, never the other way round.
-bool SameKind(const json& base, const json& value) {
-  if (base.is_number_float()) return value.is_number();
-  if (base.is_number_integer()) {  // none of ours is negative
-    return value.is_number_unsigned() ||
-           (value.is_number_integer() && value.get<std::int64_t>() >= 0);
-  }
-  return base.type() == value.type();
-}
-
-const char* KindName(const json& base) {
-  if (base.is_number_float()) return "a number";
-  if (base.is_number_integer()) return "a whole number, 0 or more";
-  return base.type_name();
-}
-
-std::string JoinKeys(const json& object) {
-  std::string keys;
-  for (const auto& [key, value] : object.items()) keys += (keys.empty() ? "" : ", ") + key;
-  return keys;
-}
-
 // Every effect with its defaults, whether it is on or not.
 const json& EffectsWithDefaults() {
   static const json all = [] {
@@ -106,54 +85,6 @@ const json& EffectsWithDefaults() {
   return all;
 }
 
-void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix);
-
-// An effect's block: null turns it off, an object turns it on and changes the keys that it names.
-void OverlayEffect(json& effect, const std::string& name, const json& change,
-                   const std::string& where) {
-  if (change.is_null()) {
-    effect = nullptr;
-    return;
-  }
-  if (effect.is_null()) effect = EffectsWithDefaults().at(name);
-  Overlay(effect, change, where, "effects." + name);
-}
-
-// Writes `change` over `base`; each key must stand in `base` with the same kind of value.
-void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix) {
-  if (!change.is_object()) {
-    throw sfm::InputError("{}: {} must be an object {{...}}", where,
-                          prefix.empty() ? "the configuration" : prefix);
-  }
-  for (const auto& [key, value] : change.items()) {
-    const std::string full = prefix.empty() ? key : prefix + "." + key;
-    if (!base.contains(key)) {
-      throw sfm::InputError("{}: unknown key {}; known here are {}", where, full, JoinKeys(base));
-    }
-    json& old = base[key];
-    if (prefix == "effects") {
-      OverlayEffect(old, key, value, where);
-    } else if (old.is_object()) {
-      Overlay(old, value, where, full);
-    } else if (!SameKind(old, value)) {
-      throw sfm::InputError("{}: {} must be {}, not {}", where, full, KindName(old),
-                            value.dump(-1, ' ', false, json::error_handler_t::replace));
-    } else {
-      old = value;
-    }
-  }
-}
-
-json ParseJson(const std::string& text, const std::string& where) {
-  try {
-    return json::parse(text);
-  } catch (const json::parse_error& error) {
-    throw sfm::InputError("{}: is not valid JSON at byte {}; mend it there", where, error.byte);
-  } catch (const json::out_of_range& error) {
-    throw sfm::InputError("{}: holds a number out of range: {}", where, error.what());
-  }
-}
-
 // Writes a preset or file, after the chain of its parents, over `config`.
 void ApplyPreset(json& config, const std::string& preset, std::set<std::string> seen) {
   if (!seen.insert(preset).second) {
@@ -169,30 +100,13 @@ void ApplyPreset(json& config, const std::string& preset, std::set<std::string> 
   }
   const std::string where = "config " + preset;
   json change =
-      ParseJson(found != built_in.end() ? found->second : sfm::ReadWholeFile(preset), where);
+      ParseConfig(found != built_in.end() ? found->second : sfm::ReadWholeFile(preset), where);
   if (change.is_object() && change.contains(kParentKey)) {
     if (!change[kParentKey].is_string()) throw sfm::InputError("{}: parent must be a name", where);
     ApplyPreset(config, change[kParentKey], seen);
     change.erase(kParentKey);
   }
-  Overlay(config, change, where, "");
-}
-
-// "a.b=value" as {"a": {"b": value}}.
-json ParseAssignment(const std::string& assignment) {
-  const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    throw sfm::InputError("--set {}: want block.key=value, for example train.steps=2000",
-                          assignment);
-  }
-  const std::string text = assignment.substr(equals + 1);
-  json value = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (value.is_discarded()) value = text;  // a bare word is a string
-  std::string path = assignment.substr(0, equals);
-  for (std::size_t dot; (dot = path.rfind('.')) != std::string::npos; path.resize(dot)) {
-    value = json{{path.substr(dot + 1), value}};
-  }
-  return json{{path, value}};
+  OverlayConfig(config, change, where, EffectsWithDefaults());
 }
 
 void CheckEncoding(const std::string& block, const kernels::HashGridOptions& o) {
@@ -269,7 +183,7 @@ std::set<std::string> NamedEffects(const std::string& preset,
   for (const std::string& assignment : assignments) take(ParseAssignment(assignment));
   // Built-in presets leave effects to the scene.
   for (std::string file = preset; !BuiltInPresets().contains(file);) {
-    const json change = ParseJson(sfm::ReadWholeFile(file), "config " + file);
+    const json change = ParseConfig(sfm::ReadWholeFile(file), "config " + file);
     take(change);
     if (!change.contains(kParentKey)) break;
     file = change[kParentKey];
@@ -279,7 +193,7 @@ std::set<std::string> NamedEffects(const std::string& preset,
 
 Config ConfigFromJson(const json& document, const std::string& where) {
   json complete = Config();
-  Overlay(complete, document, where, "");
+  OverlayConfig(complete, document, where, EffectsWithDefaults());
   return Checked(complete, where);
 }
 
@@ -287,7 +201,8 @@ Config LoadConfig(const std::string& preset, const std::vector<std::string>& ass
   json document = Config();
   ApplyPreset(document, preset, {});
   for (const std::string& assignment : assignments) {
-    Overlay(document, ParseAssignment(assignment), "--set " + assignment, "");
+    OverlayConfig(document, ParseAssignment(assignment), "--set " + assignment,
+                  EffectsWithDefaults());
   }
   return Checked(document, "config " + preset);
 }

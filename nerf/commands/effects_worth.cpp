@@ -2,7 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "nerf/config.h"
 #include "nerf/data/dataset.h"
 #include "nerf/train/effect_trial.h"
+#include "nerf/train/held_out.h"
 #include "sfm/atomic_file.h"
 #include "sfm/input_error.h"
 #include "sfm/progress.h"
@@ -21,6 +24,7 @@ namespace {
 struct Worth {
   std::string effect;
   TrialResult with, without;
+  bool on_halves = false;  // of photographs, and not on those that are held out
 };
 
 // The photographs, with those held out to be measured on.
@@ -45,6 +49,7 @@ nlohmann::json JsonFrom(const std::vector<Worth>& all, int steps) {
     effects.push_back({{"effect", w.effect},
                        {"psnr_with", w.with.psnr},
                        {"psnr_without", w.without.psnr},
+                       {"on_halves", w.on_halves},
                        {"seconds_a_step_with", w.with.seconds_a_step},
                        {"seconds_a_step_without", w.without.seconds_a_step},
                        {"megabytes", w.with.megabytes - w.without.megabytes}});
@@ -67,6 +72,11 @@ void PrintTable(const std::vector<Worth>& all, int steps) {
       "after {} steps, on the held-out photographs, each at its own exposure; more training may "
       "change it\n",
       steps);
+  for (const Worth& w : all) {
+    if (!w.on_halves) continue;
+    fmt::print("{}: on the right halves of photographs whose left halves are learned from\n",
+               w.effect);
+  }
 }
 
 }  // namespace
@@ -75,8 +85,8 @@ void MeasureEffects(const OpenedRun& run, int steps, bool json,
                     const std::filesystem::path& output) {
   const Config& config = run.model.config;
   const sfm::PosedImages posed = MeasuredOnHeldOut(run.posed.source);
-  const Dataset data = LoadOrWarn(posed, config, run.model.scene.normalized_from_world,
-                                  run.posed.source.parent_path());
+  Dataset data = LoadOrWarn(posed, config, run.model.scene.normalized_from_world,
+                            run.posed.source.parent_path());
   const auto try_with = [&](const Config& tried, const Dataset& photographs) {
     return TryConfig(tried, FactsOf(photographs, run.model.scene.normalized_from_world),
                      photographs, steps);
@@ -100,10 +110,14 @@ void MeasureEffects(const OpenedRun& run, int steps, bool json,
   sfm::ProgressLine progress("measuring", 2 * static_cast<std::int64_t>(effects.size()));
   std::vector<Worth> all;
   for (const std::string& effect : effects) {
+    // Poses of photographs that are held out are refined by nobody: halves of others are measured.
+    std::optional<HeldOutHalves> halves;
+    if (effect == "poses") halves.emplace(data);
+    if (halves && halves->Count() == 0) halves.reset();
     // With and without in turn, so that both see the same neighbours on the machine.
     const TrialResult with = try_with(config, data);
     progress.Update(2 * static_cast<std::int64_t>(all.size()) + 1, effect);
-    all.push_back({effect, with, try_without(effect)});
+    all.push_back({effect, with, try_without(effect), halves.has_value()});
     progress.Update(2 * static_cast<std::int64_t>(all.size()), effect);
   }
   progress.Finish();

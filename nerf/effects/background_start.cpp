@@ -15,86 +15,88 @@ namespace {
 using Color = std::array<float, 3>;
 
 constexpr int kCoarsest = 16;            // rows
-constexpr float kAgree = 0.06f;          // of the range of a channel, sRGB
+constexpr float kAgree = 0.06f;          // shades apart
 constexpr std::size_t kFewestAgree = 2;  // photographs
+constexpr std::size_t kMostAsked = 128;  // photographs of a texel; more say no more
+constexpr double kUsual = 0.1;           // share of the texels in which photographs agree
 
 // Colours nearer to 0 or 1 would be infinite before the activation.
 constexpr float kFaintest = 0.01f;
 
 Color MedianOf(std::vector<Color>& colors) {
   Color median;
-  const auto middle = colors.begin() + static_cast<std::ptrdiff_t>(colors.size() / 2);
+  const std::size_t high = colors.size() / 2, low = (colors.size() - 1) / 2;
   for (int c = 0; c < 3; ++c) {
-    std::ranges::nth_element(colors, middle, {}, [c](const Color& color) { return color[c]; });
-    median[c] = (*middle)[c];
+    std::ranges::sort(colors, {}, [c](const Color& color) { return color[c]; });
+    median[c] = (colors[low][c] + colors[high][c]) / 2;
   }
   return median;
 }
 
-// What photographs show in the direction of a texel.
-struct Shown {
-  std::vector<Color> all;
-  std::vector<Color> of_photographs;  // the median of each
-};
+// What photographs show in the direction of a texel: the median of each.
+using Shown = std::vector<Color>;
 
 std::vector<Shown> ShownInTexels(std::span<const std::int64_t> photograph,
                                  std::span<const float> direction, std::span<const float> rgb,
                                  int rows) {
-  std::vector<std::vector<std::size_t>> rays_of(2 * rows * rows);
+  std::vector<std::map<std::int64_t, std::vector<Color>>> colors_of(2 * rows * rows);
   for (std::size_t r = 0; r < photograph.size(); ++r) {
     const auto around = BackgroundMap::TexelsOf(direction.subspan(3 * r).first<3>(), rows);
     const auto nearest = std::ranges::max_element(around.weight) - around.weight.begin();
-    rays_of[around.index[nearest]].push_back(r);
+    colors_of[around.index[nearest]][photograph[r]].push_back(
+        {rgb[3 * r], rgb[3 * r + 1], rgb[3 * r + 2]});
   }
-  std::vector<Shown> shown(rays_of.size());
-  for (std::size_t i = 0; i < rays_of.size(); ++i) {
-    std::map<std::int64_t, std::vector<Color>> by_photograph;
-    for (const std::size_t r : rays_of[i]) {
-      const Color color = {rgb[3 * r], rgb[3 * r + 1], rgb[3 * r + 2]};
-      by_photograph[photograph[r]].push_back(color);
-      shown[i].all.push_back(color);
+  std::vector<Shown> shown(colors_of.size());
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    for (auto& [_, colors] : colors_of[i]) {
+      if (shown[i].size() < kMostAsked) shown[i].push_back(MedianOf(colors));
     }
-    for (auto& [_, colors] : by_photograph) shown[i].of_photographs.push_back(MedianOf(colors));
   }
   return shown;
 }
 
-// Between 0 and 1, about as eyes tell shades apart.
-float Shade(float value, ColorEncoding encoding) {
-  if (encoding == ColorEncoding::kSrgb) return value;
-  const float light = std::max(value, 0.0f);
-  return std::sqrt(light / (1 + light));
+// In which colours that eyes tell apart about as well are as far apart; of linear light whatever
+// its unit.
+Color ShadeOf(const Color& color, ColorEncoding encoding) {
+  constexpr float kShadesOfAFactorE = 0.3f, kBlack = 1e-6f;
+  Color shade = color;
+  if (encoding == ColorEncoding::kSrgb) return shade;
+  for (float& s : shade) s = kShadesOfAFactorE * std::log(std::max(s, kBlack));
+  return shade;
 }
 
-float Distance(const Color& a, const Color& b, ColorEncoding encoding) {
-  float largest = 0;
-  for (int c = 0; c < 3; ++c) {
-    largest = std::max(largest, std::fabs(Shade(a[c], encoding) - Shade(b[c], encoding)));
-  }
-  return largest;
-}
-
-// The median of the largest group of colours about one of them; nullopt where no two agree.
-std::optional<Color> Agreed(const std::vector<Color>& colors, ColorEncoding encoding) {
-  std::vector<Color> largest;
-  float nearest = 0;
-  for (const Color& about : colors) {
-    std::vector<Color> group;
+// The median of the largest group of colours about one of them, the closest of those as large;
+// nullopt where no two agree.
+std::optional<Color> Agreed(const Shown& shown, ColorEncoding encoding) {
+  std::vector<Color> shades;
+  for (const Color& color : shown) shades.push_back(ShadeOf(color, encoding));
+  const auto distance = [&](std::size_t i, std::size_t k) {
+    float largest = 0;
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, std::fabs(shades[i][c] - shades[k][c]));
+    return largest;
+  };
+  std::size_t best = 0, largest = 0;
+  float closest = 0;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    std::size_t count = 0;
     float sum = 0;
-    for (const Color& other : colors) {
-      const float distance = Distance(about, other, encoding);
-      if (distance > kAgree) continue;
-      group.push_back(other);
-      sum += distance;
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+      const float apart = distance(i, k);
+      if (apart > kAgree) continue;
+      ++count;
+      sum += apart;
     }
-    const bool closer = group.size() == largest.size() && sum < nearest;
-    if (group.size() > largest.size() || closer) {
-      largest = std::move(group);
-      nearest = sum;
-    }
+    if (count < largest || (count == largest && sum >= closest)) continue;
+    best = i;
+    largest = count;
+    closest = sum;
   }
-  if (largest.size() < kFewestAgree) return std::nullopt;
-  return MedianOf(largest);
+  if (largest < kFewestAgree) return std::nullopt;
+  std::vector<Color> group;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    if (distance(best, k) <= kAgree) group.push_back(shown[k]);
+  }
+  return MedianOf(group);
 }
 
 void SetTexel(const Color& color, std::size_t texel, BackgroundMap& map) {
@@ -173,11 +175,12 @@ void StartFromPhotographs(std::span<const std::int64_t> photograph,
   map.raw.assign(3 * shown.size(), 0.0f);
   std::vector<bool> known(shown.size());
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const auto agreed = Agreed(shown[i].of_photographs, map.encoding);
+    const auto agreed = Agreed(shown[i], map.encoding);
     if (agreed) SetTexel(*agreed, i, map);
     known[i] = agreed.has_value();
   }
   if (map.rows > kCoarsest) {
+    shown = {};
     BackgroundMap coarse = {map.rows / 2, map.encoding, {}};
     StartFromPhotographs(photograph, direction, rgb, coarse);
     for (std::size_t i = 0; i < known.size(); ++i) {
@@ -185,11 +188,13 @@ void StartFromPhotographs(std::span<const std::int64_t> photograph,
     }
     return;
   }
-  // Where exposures differ much nobody agrees with anybody.
-  const bool nobody = std::ranges::find(known, true) == known.end();
-  for (std::size_t i = 0; i < known.size() && nobody; ++i) {
-    if (!shown[i].all.empty()) SetTexel(MedianOf(shown[i].all), i, map);
-    known[i] = !shown[i].all.empty();
+  // Where exposures differ some agree by chance.
+  const auto asked = std::ranges::count_if(shown, [](const Shown& s) { return !s.empty(); });
+  const auto agreed = std::ranges::count(known, true);
+  const bool usual = static_cast<double>(agreed) >= kUsual * static_cast<double>(asked);
+  for (std::size_t i = 0; i < known.size() && !usual; ++i) {
+    if (!shown[i].empty()) SetTexel(MedianOf(shown[i]), i, map);
+    known[i] = !shown[i].empty();
   }
   Grow(std::move(known), map);
 }

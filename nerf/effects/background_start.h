@@ -9,10 +9,10 @@ namespace nerf {
 
 // What training of a background starts from. Surroundings without end look the same in one
 // direction, whichever photograph shows them; what stands before them does not. So each texel
-// becomes what most photographs agree on, two at least; where none agree, what a map of half the
-// rows has there that is made in the same way. In the coarsest one (16 rows or fewer) these texels
-// are the mean of those beside them. Where nobody agrees with anybody, as exposures differ, it has
-// the median of all that is shown.
+// becomes the median of the largest group of photographs that agree on it, two at least; where none
+// agree, what a map of half the rows has there that is made in the same way. In the coarsest one
+// (16 rows or fewer) these texels are the mean of those beside them. Where photographs hardly ever
+// agree, as their exposures differ, it has the median of them all.
 //   photograph  [R] which
 //   direction   [R,3] unit vectors
 //   rgb         [R,3] in the encoding of the map

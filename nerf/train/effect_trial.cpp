@@ -44,9 +44,11 @@ TrialResult TryConfig(Config config, const SceneFacts& scene, const Dataset& dat
   return result;
 }
 
-double SecondsOfAStep(Config config, const SceneFacts& scene, const Dataset& data, int steps) {
+double EstimateSecondsOfAStep(Config config, const SceneFacts& scene, const Dataset& data,
+                              int steps) {
   config.train.steps = steps;
   config.train.time_budget = 0;
+  config.train.target_psnr = 0;
   const Stopwatch watch;
   Trainer trainer(config, scene, data, {});
   const double of_step = trainer.TrySteps(std::min(kTimed, steps));

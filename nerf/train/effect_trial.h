@@ -24,9 +24,11 @@ double MegabytesOf(const Model& model);
 // configurations alone. Needs validation photographs.
 TrialResult TryConfig(Config config, const SceneFacts& scene, const Dataset& data, int steps);
 
-// What a step of such a training will take, with its share of all else, by the first ones.
+// What a step of such a training will take, with its share of what else a trial does, by the first
+// ones.
 //   steps  of the training
-double SecondsOfAStep(Config config, const SceneFacts& scene, const Dataset& data, int steps);
+double EstimateSecondsOfAStep(Config config, const SceneFacts& scene, const Dataset& data,
+                              int steps);
 
 // The configuration with one effect on or off. setting: JSON of its block, "{}" or "null".
 Config WithEffect(const Config& config, const std::string& effect, const std::string& setting);

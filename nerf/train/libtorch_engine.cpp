@@ -14,6 +14,7 @@
 #include "nerf/render/proposal_sampling.h"
 #include "nerf/render/ray_gradient.h"
 #include "nerf/render/volume_rendering.h"
+#include "nerf/train/describe_non_finite.h"
 #include "nerf/train/losses.h"
 #include "nerf/train/non_finite_error.h"
 #include "sfm/input_error.h"
@@ -31,28 +32,6 @@ void ScaleGradients(const FieldOutput& field, const torch::Tensor& t, double ful
   const torch::Tensor scale = torch::clamp((t / full_distance).square(), 0.0, 1.0);
   field.sigma.register_hook([scale](const torch::Tensor& g) { return g * scale; });
   field.radiance.register_hook([scale](const torch::Tensor& g) { return g * scale.unsqueeze(1); });
-}
-
-// Names the first ray whose colour is not finite, and the stage that spoilt it.
-std::string DescribeNonFinite(const PackedSamples& samples, const FieldOutput& field,
-                              const torch::Tensor& rgb, const torch::Tensor& target) {
-  const auto first_bad = [](const torch::Tensor& values) {
-    const torch::Tensor bad = torch::nonzero(torch::logical_not(torch::isfinite(values)));
-    return bad.size(0) > 0 ? bad[0][0].item<std::int64_t>() : std::int64_t{-1};
-  };
-  if (const std::int64_t s = first_bad(field.sigma); s >= 0) {
-    return fmt::format("ray {}, stage density, sample at t = {}", samples.ray[s], samples.t[s]);
-  }
-  if (const std::int64_t s = first_bad(field.radiance); s >= 0) {
-    return fmt::format("ray {}, stage colour, sample at t = {}", samples.ray[s], samples.t[s]);
-  }
-  if (const std::int64_t r = first_bad(rgb); r >= 0) {
-    return fmt::format("ray {}, stage compositing", r);
-  }
-  if (const std::int64_t r = first_bad(target); r >= 0) {
-    return fmt::format("ray {}, stage target colours", r);
-  }
-  return "stage loss";
 }
 
 }  // namespace

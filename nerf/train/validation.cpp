@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "nerf/effects/exposure_fit.h"
@@ -61,13 +62,20 @@ RayBatch Validation::Rays(const Model& model) const {
   const std::int64_t count = batch_.rays.Size();
   const torch::Tensor of_lens = model.poses->LogFocals();
   const std::vector<std::string>& trained = model.scene.photographs;
+  // Of each photograph, among those trained on; nullopt where it is none of them.
+  std::vector<std::optional<std::int64_t>> place_of;
+  for (const std::string& name : names_) {
+    const auto found = std::ranges::find(trained, name);
+    place_of.emplace_back(found == trained.end() ? std::nullopt
+                                                 : std::optional(found - trained.begin()));
+  }
   std::vector<float> log_f, known;
-  std::vector<std::int64_t> place;  // of the photograph among those trained on
+  std::vector<std::int64_t> place;
   for (std::int64_t r = 0; r < count; ++r) {
     log_f.push_back(lens_[r] < of_lens.size(0) ? of_lens[lens_[r]].item<float>() : 0.0f);
-    const auto found = std::ranges::find(trained, names_[batch_.photograph[r]]);
-    known.push_back(found == trained.end() ? 0.0f : 1.0f);
-    place.push_back(found == trained.end() ? 0 : found - trained.begin());
+    const std::optional<std::int64_t> of_photograph = place_of[batch_.photograph[r]];
+    known.push_back(of_photograph ? 1.0f : 0.0f);
+    place.push_back(of_photograph.value_or(0));
   }
   const auto rows = [&](const std::vector<float>& values, std::int64_t columns) {
     return TensorOf(values, {count, columns}, torch::kFloat);

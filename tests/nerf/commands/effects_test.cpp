@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "nerf/data/image_io.h"
 #include "sfm/atomic_file.h"
@@ -21,6 +22,7 @@ using test::RunNerf;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing::UnorderedElementsAreArray;
 
 // Small captures that call for one effect each, and tiny runs on them.
 class EffectsCommands : public testing::Test {
@@ -172,6 +174,40 @@ TEST_F(EffectsCommands, RefinedPosesAreToldAndWritten) {
   EXPECT_GT(moved, 10);
   EXPECT_LT(moved, 17);  // of those held out nothing is learned
   EXPECT_EQ(RunNerf("eval " + Path("refined")).exit_status, 0);
+}
+
+TEST_F(EffectsCommands, EvalMeasuresWhatEachEffectInUseIsWorthAndCosts) {
+  const auto run = RunNerf(Train("exposure", "worth", "--effects -view,+poses"));
+  ASSERT_EQ(run.exit_status, 0) << run.output;
+  const std::string eval = "eval " + Path("worth") + " --effects --effects-steps ";
+  const auto table = RunNerf(eval + "10");
+  EXPECT_EQ(table.exit_status, 0) << table.output;
+  EXPECT_THAT(table.output, AllOf(HasSubstr("worth dB"), HasSubstr("after 10 steps"),
+                                  HasSubstr("poses: on the right halves")));
+
+  const auto told = RunNerf(eval + "200 --json");
+  ASSERT_EQ(told.exit_status, 0) << told.output;
+  const auto json = nlohmann::json::parse(told.output);
+  EXPECT_EQ(json, Json("worth/eval/effects_worth.json"));
+  std::vector<std::string> measured;
+  for (const auto& worth : json.at("effects")) {
+    const std::string effect = worth.at("effect");
+    measured.push_back(effect);
+    EXPECT_EQ(worth.at("on_halves"), effect == "poses");
+    EXPECT_GT(worth.at("seconds_a_step_with"), 0);
+    // Photographs a stop apart.
+    if (effect == "exposure") {
+      EXPECT_GT(worth.at("psnr_with"), worth.at("psnr_without"));
+      EXPECT_GT(worth.at("megabytes"), 0);
+    }
+  }
+  EXPECT_THAT(measured,
+              UnorderedElementsAreArray(
+                  Json("worth/effects.json").at("simulated").get<std::vector<std::string>>()));
+
+  const auto all = RunNerf(Train("exposure", "none-held-out", "--set data.test_every=0"));
+  ASSERT_EQ(all.exit_status, 0) << all.output;
+  ExpectRefused("eval --effects " + Path("none-held-out"), HasSubstr("is held out"));
 }
 
 TEST_F(EffectsCommands, WhatAPersonSaysStands) {

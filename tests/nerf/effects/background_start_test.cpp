@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -64,7 +65,7 @@ TEST(BackgroundStart, IsWhatMostPhotographsAgreeOn) {
       for (const int sky : {0, 3}) Show(sky, 0, 1, rows, Bright, rays);
       for (const int other : {1, 2, 4}) {
         Show(
-            other, 0, 1, rows, [&](double, double) { return 0.15f * static_cast<float>(other); },
+            other, 0, 1, rows, [&](double, double) { return 0.11f * static_cast<float>(other); },
             rays);
       }
       const BackgroundMap map = Started(rays, rows, encoding);
@@ -97,14 +98,64 @@ TEST(BackgroundStart, GoesOnWithTheSkyWhereOnePhotographAloneLooks) {
   }
 }
 
+// Each texel of the finer map is seen by one photograph alone, of the coarser one by both.
+TEST(BackgroundStart, GoesOnWithACoarserMapAsThatIs) {
+  const auto smooth = [](double down, double around) {
+    return static_cast<float>(0.5 + 0.2 * std::sin(2 * std::numbers::pi * around) +
+                              0.2 * (down - 0.5));
+  };
+  for (const int rows : {17, 32, 33}) {
+    Rays rays;
+    for (const int photograph : {0, 1}) Show(photograph, 0.2, 0.8, 64, smooth, rays);
+    const BackgroundMap fine = Started(rays, rows), coarse = Started(rays, rows / 2);
+    Rays apart = rays;
+    for (std::size_t r = 0; r < apart.photograph.size(); ++r) {
+      const auto texels =
+          BackgroundMap::TexelsOf(std::span(apart.direction).subspan(3 * r).first<3>(), rows);
+      const auto nearest = std::ranges::max_element(texels.weight) - texels.weight.begin();
+      apart.photograph[r] = texels.index[nearest] % 2;
+    }
+    const BackgroundMap filled = Started(apart, rows);
+    for (const double down : {0.35, 0.5, 0.65}) {
+      for (const double around : {0.1, 0.4, 0.72}) {
+        EXPECT_NEAR(SeenAt(fine, down, around), smooth(down, around), 0.02f);
+        EXPECT_NEAR(SeenAt(filled, down, around), smooth(down, around), 0.04f);
+        EXPECT_NEAR(SeenAt(filled, down, around), SeenAt(coarse, down, around), 0.03f);
+      }
+    }
+  }
+}
+
 TEST(BackgroundStart, IsTheMedianWhereExposuresDiffer) {
   Rays rays;
   for (const int photograph : {0, 1, 2}) {
     Show(
         photograph, 0, 1, 64,
-        [&](double, double) { return 0.2f + 0.3f * static_cast<float>(photograph); }, rays);
+        [&](double down, double) {
+          // At the zenith two of them agree by chance.
+          return down < 0.05 ? 0.9f : 0.2f + 0.3f * static_cast<float>(photograph);
+        },
+        rays);
   }
   EXPECT_NEAR(SeenAt(Started(rays, 64), 0.4, 0.6), 0.5f, 1e-3f);
+  EXPECT_NEAR(SeenAt(Started(rays, 16), 0.4, 0.6), 0.5f, 1e-3f);
+}
+
+TEST(BackgroundStart, DoesNotDependOnTheUnitOfLinearLight) {
+  for (const float unit : {0.1f, 1000.0f}) {
+    Rays rays;
+    for (const int sky : {0, 1}) {
+      Show(
+          sky, 0, 1, 16, [&](double, double) { return 0.7f * unit; }, rays);
+    }
+    for (const int other : {2, 3, 4}) {
+      Show(
+          other, 0, 1, 16, [&](double, double) { return 0.1f * unit * static_cast<float>(other); },
+          rays);
+    }
+    EXPECT_NEAR(SeenAt(Started(rays, 16, ColorEncoding::kLinear), 0.4, 0.6), 0.7f * unit,
+                1e-3f * unit);
+  }
 }
 
 TEST(BackgroundStart, StaysFiniteOfBlackAndWhite) {
@@ -120,8 +171,7 @@ TEST(BackgroundStart, StaysFiniteOfBlackAndWhite) {
 
 TEST(BackgroundStart, StaysGreyWhereNothingIsShownAtAll) {
   for (const int rows : {8, 64}) {
-    EXPECT_EQ(Started({}, rows, ColorEncoding::kLinear).raw,
-              std::vector<float>(6 * rows * rows, 0.0f));
+    EXPECT_EQ(Started({}, rows).raw, std::vector<float>(6 * rows * rows, 0.0f));
   }
 }
 
