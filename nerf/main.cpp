@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "nerf/base/input_error.h"
 #include "nerf/commands/commands.h"
-#include "sfm/input_error.h"
 
 namespace {
 
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& e) {
     spdlog::error("{}: {}; choose another path", e.path1().string(), e.code().message());
     return kExitBadInput;
-  } catch (const sfm::InputError& e) {
+  } catch (const nerf::InputError& e) {
     spdlog::error("{}", e.what());
     return kExitBadInput;
   } catch (const std::exception& e) {

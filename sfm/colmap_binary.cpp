@@ -5,15 +5,15 @@
 #include <string_view>
 #include <type_traits>
 
-#include "sfm/camera_intrinsics.h"
-#include "sfm/camera_models.h"
+#include "nerf/base/file_bytes.h"
+#include "nerf/base/input_error.h"
+#include "nerf/scene/camera_intrinsics.h"
+#include "nerf/scene/camera_models.h"
 #include "sfm/colmap_records.h"
-#include "sfm/file_bytes.h"
-#include "sfm/input_error.h"
 
 namespace fs = std::filesystem;
 
-namespace sfm::colmap {
+namespace nerf::sfm::colmap {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "COLMAP's files are little-endian");
@@ -171,4 +171,4 @@ int CountImagesBinary(const fs::path& file) {
   return static_cast<int>(count);
 }
 
-}  // namespace sfm::colmap
+}  // namespace nerf::sfm::colmap

@@ -10,10 +10,10 @@
 #include <numeric>
 #include <set>
 
-#include "sfm/atomic_file.h"
-#include "sfm/input_error.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,4 +190,4 @@ std::vector<std::pair<std::string, std::string>> SelectPairs(const std::vector<M
   return {selected.begin(), selected.end()};
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace sfm {
+namespace nerf::sfm {
 
 // Two photographs that COLMAP found to show the same thing.
 struct MatchedPair {
@@ -37,4 +37,4 @@ std::vector<std::pair<std::string, std::string>> SelectPairs(const std::vector<M
                                                              std::vector<std::string> names,
                                                              int each, int neighbours);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <set>
 
-#include "sfm/input_error.h"
-#include "sfm/parallel_for.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,11 +125,14 @@ void WriteColmapImages(const std::vector<Photo>& photos, const std::vector<Colma
     if (!error) fs::create_directories((image_folder / image.name).parent_path(), error);
   }
   if (error) throw InputError("{}: cannot be made: {}", image_folder.string(), error.message());
-  ParallelFor(static_cast<int>(plan.size()), threads, [&](int i) {
-    const Photo& photo = photos[plan[i].photo];
-    const fs::path target = image_folder / plan[i].name;
-    plan[i].stand_in ? WriteStandIn(photo, target) : LinkOrCopy(photo, target);
-  });
+  ParallelForEach(
+      std::ssize(plan),
+      [&](std::int64_t i) {
+        const Photo& photo = photos[plan[i].photo];
+        const fs::path target = image_folder / plan[i].name;
+        plan[i].stand_in ? WriteStandIn(photo, target) : LinkOrCopy(photo, target);
+      },
+      threads);
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -6,7 +6,7 @@
 
 #include "sfm/photo_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 // What COLMAP gets to see of one photograph.
 struct ColmapImage {
@@ -30,4 +30,4 @@ std::vector<ColmapImage> PlanColmapImages(const std::vector<Photo>& photos);
 void WriteColmapImages(const std::vector<Photo>& photos, const std::vector<ColmapImage>& plan,
                        const std::filesystem::path& image_folder, int threads = 0);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/progress.h"
 #include "sfm/colmap_database.h"
 #include "sfm/colmap_steps.h"
-#include "sfm/progress.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -90,4 +90,4 @@ ColmapSteps::Arguments ColmapSteps::MatchingArguments(const std::string& command
   return arguments;
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

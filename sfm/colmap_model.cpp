@@ -7,14 +7,14 @@
 #include <unordered_map>
 #include <utility>
 
-#include "sfm/camera_intrinsics.h"
+#include "nerf/base/input_error.h"
+#include "nerf/image/image_files.h"
+#include "nerf/scene/camera_intrinsics.h"
 #include "sfm/colmap_records.h"
-#include "sfm/image_files.h"
-#include "sfm/input_error.h"
 
 namespace fs = std::filesystem;
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 struct ModelFile {
@@ -262,4 +262,4 @@ fs::path LargestModel(const fs::path& sparse_folder) {
   return largest;
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

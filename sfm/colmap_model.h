@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 // Whether a folder holds cameras and images as .bin or .txt.
 bool IsColmapModel(const std::filesystem::path& folder);
@@ -35,4 +35,4 @@ std::vector<std::filesystem::path> SubModels(const std::filesystem::path& sparse
 // there is none.
 std::filesystem::path LargestModel(const std::filesystem::path& sparse_folder);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -1,9 +1,9 @@
 #include "sfm/colmap_options.h"
 
-#include "sfm/camera_models.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/scene/camera_models.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 void ColmapOptions::Check() const {
   if (matcher != "auto" && matcher != "exhaustive" && matcher != "sequential" &&
@@ -27,4 +27,4 @@ void ColmapOptions::Check() const {
   if (threads < 0) throw InputError("threads: {}; give 1 or more, or 0 for all cores", threads);
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace sfm {
+namespace nerf::sfm {
 
 struct ColmapOptions {
   // Which photographs are compared: "exhaustive", every pair; "sequential", neighbours by name
@@ -23,4 +23,4 @@ struct ColmapOptions {
   void Check() const;
 };
 
-}  // namespace sfm
+}  // namespace nerf::sfm

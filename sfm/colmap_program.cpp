@@ -12,9 +12,9 @@
 #include <optional>
 #include <regex>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace bp = boost::process;
@@ -161,4 +161,4 @@ StepProgress ParseProgress(std::string_view line) {
   return {};
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sfm {
+namespace nerf::sfm {
 
 // The COLMAP program that is installed here, version 3.8 or later, run without a display.
 // COLMAP 3.13 renamed options without keeping the old names, so the program itself is asked.
@@ -55,4 +55,4 @@ struct StepProgress {
 };
 StepProgress ParseProgress(std::string_view line);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
 // What the files of a COLMAP model say, record by record, before anything is put together.
 // Format: COLMAP documentation "Output Format"; src/base/reconstruction.cc of COLMAP 3.8.
-namespace sfm::colmap {
+namespace nerf::sfm::colmap {
 
 using CameraMap = std::map<std::uint32_t, Camera>;  // by COLMAP's camera id
 
@@ -48,4 +48,4 @@ std::vector<PointRecord> ReadPointsText(const std::filesystem::path& file);
 int CountImagesBinary(const std::filesystem::path& file);
 int CountImagesText(const std::filesystem::path& file);
 
-}  // namespace sfm::colmap
+}  // namespace nerf::sfm::colmap

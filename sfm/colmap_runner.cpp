@@ -7,11 +7,11 @@
 #include <map>
 #include <regex>
 
+#include "nerf/base/input_error.h"
 #include "sfm/colmap_images.h"
 #include "sfm/colmap_steps.h"
-#include "sfm/input_error.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,4 +144,4 @@ PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& worksp
   return result;
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

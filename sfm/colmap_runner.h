@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "nerf/scene/posed_images.h"
 #include "sfm/colmap_options.h"
 #include "sfm/photo_folder.h"
-#include "sfm/posed_images.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 struct ColmapReport {
   int photos = 0;  // those that can be read
@@ -43,4 +43,4 @@ PosedImages PosesFromPhotos(const std::filesystem::path& photo_folder,
 // of the same width, at least half of whose values between the first and the last are there.
 bool IsNumberedSequence(const std::vector<std::string>& names);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

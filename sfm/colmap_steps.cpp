@@ -6,13 +6,13 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/progress.h"
 #include "sfm/colmap_database.h"
 #include "sfm/colmap_model.h"
-#include "sfm/input_error.h"
-#include "sfm/progress.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,4 +210,4 @@ void ColmapSteps::RunMapper(const std::string& step, const fs::path& target,
   if (outcome.exit_code != 0 && !found_nothing) ThrowStepFailed("mapper", outcome, LogFile(step));
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

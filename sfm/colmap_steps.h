@@ -8,14 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "nerf/scene/posed_images.h"
 #include "sfm/colmap_images.h"
 #include "sfm/colmap_options.h"
 #include "sfm/colmap_program.h"
 #include "sfm/photo_folder.h"
-#include "sfm/posed_images.h"
 #include "sfm/step_ledger.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 // The steps from photographs to models, each in a method, to be called in this order. A step that
 // the workspace has finished already, from the same inputs, is skipped, and the log says so.
@@ -90,4 +90,4 @@ class ColmapSteps {
   std::vector<std::pair<std::string, double>> seconds_;
 };
 
-}  // namespace sfm
+}  // namespace nerf::sfm

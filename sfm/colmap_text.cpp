@@ -4,15 +4,15 @@
 #include <string_view>
 #include <utility>
 
-#include "sfm/camera_intrinsics.h"
-#include "sfm/camera_models.h"
+#include "nerf/base/file_bytes.h"
+#include "nerf/base/input_error.h"
+#include "nerf/scene/camera_intrinsics.h"
+#include "nerf/scene/camera_models.h"
 #include "sfm/colmap_records.h"
-#include "sfm/file_bytes.h"
-#include "sfm/input_error.h"
 
 namespace fs = std::filesystem;
 
-namespace sfm::colmap {
+namespace nerf::sfm::colmap {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -163,4 +163,4 @@ int CountImagesText(const fs::path& file) {
   return count;
 }
 
-}  // namespace sfm::colmap
+}  // namespace nerf::sfm::colmap

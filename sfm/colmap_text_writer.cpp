@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "sfm/atomic_file.h"
-#include "sfm/camera_models.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/scene/camera_models.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 std::string CamerasText(const PosedImages& posed) {
@@ -81,4 +81,4 @@ void WriteColmapText(const PosedImages& posed, const std::filesystem::path& fold
   WriteFileAtomically(folder / "points3D.txt", PointsText(posed));
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 // Writes cameras.txt, images.txt and points3D.txt of a COLMAP model, so that ReadColmapModel (and
 // COLMAP itself) gives lenses, poses, points and tracks back. Format: COLMAP documentation "Output
@@ -12,4 +12,4 @@ namespace sfm {
 // one cannot be written.
 void WriteColmapText(const PosedImages& posed, const std::filesystem::path& folder);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

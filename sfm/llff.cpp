@@ -13,15 +13,15 @@
 #include <xtensor/xarray.hpp>
 #include <xtensor/xnpy.hpp>
 
-#include "sfm/camera_intrinsics.h"
-#include "sfm/file_bytes.h"
-#include "sfm/image_files.h"
-#include "sfm/input_error.h"
-#include "sfm/rigid_pose.h"
+#include "nerf/base/file_bytes.h"
+#include "nerf/base/input_error.h"
+#include "nerf/image/image_files.h"
+#include "nerf/scene/camera_intrinsics.h"
+#include "nerf/scene/rigid_pose.h"
 
 namespace fs = std::filesystem;
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 constexpr std::size_t kColumns = 17;
@@ -191,4 +191,4 @@ PosedImages ReadLlff(const fs::path& folder) {
   return result;
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 // Where an LLFF folder keeps its photographs: images/, or else the images_N with the smallest N
 // (copies reduced N times). Throws InputError when there is neither.
@@ -19,4 +19,4 @@ std::filesystem::path LlffImageFolder(const std::filesystem::path& folder);
 // not positive, and when the numbers of images and poses differ.
 PosedImages ReadLlff(const std::filesystem::path& folder);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

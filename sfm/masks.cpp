@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-namespace sfm {
+namespace nerf::sfm {
 
 namespace fs = std::filesystem;
 
@@ -19,4 +19,4 @@ void FindMasks(PosedImages& posed) {
   }
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

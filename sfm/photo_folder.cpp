@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "sfm/image_files.h"
-#include "sfm/input_error.h"
-#include "sfm/parallel_for.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
+#include "nerf/image/image_files.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,7 +113,8 @@ PhotoFolder CheckPhotos(const std::vector<fs::path>& files, int threads) {
   const int count = static_cast<int>(files.size());
   std::vector<Photo> photos(files.size());
   std::vector<std::optional<std::string>> reasons(files.size());
-  ParallelFor(count, threads, [&](int i) { reasons[i] = Check(files[i], photos[i]); });
+  ParallelForEach(
+      count, [&](std::int64_t i) { reasons[i] = Check(files[i], photos[i]); }, threads);
 
   PhotoFolder result;
   for (int i = 0; i < count; ++i) {
@@ -135,4 +136,4 @@ PhotoFolder CheckPhotos(const std::vector<fs::path>& files, int threads) {
   return result;
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

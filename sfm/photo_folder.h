@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace sfm {
+namespace nerf::sfm {
 
 // A photograph that decodes from its first row to its last.
 struct Photo {
@@ -42,4 +42,4 @@ std::vector<std::filesystem::path> ListPhotos(const std::filesystem::path& folde
 // Throws InputError when fewer than two are left.
 PhotoFolder CheckPhotos(const std::vector<std::filesystem::path>& files, int threads = 0);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

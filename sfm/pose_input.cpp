@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "nerf/base/input_error.h"
+#include "nerf/image/image_files.h"
 #include "sfm/colmap_model.h"
-#include "sfm/image_files.h"
-#include "sfm/input_error.h"
 #include "sfm/llff.h"
 #include "sfm/transforms_json.h"
 
 namespace fs = std::filesystem;
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 bool IsFile(const fs::path& path) {
@@ -118,4 +118,4 @@ PosedImages ReadPosedInput(const InputLocation& location) {
                    location.images.string());
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 enum class InputKind { kTransforms, kColmap, kLlff, kPhotos };
 
@@ -32,4 +32,4 @@ InputLocation FindInput(const std::filesystem::path& input);
 // Throws InputError as ReadTransformsJson, ReadColmapModel and ReadLlff do.
 PosedImages ReadPosedInput(const InputLocation& location);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

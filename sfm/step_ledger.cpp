@@ -3,9 +3,9 @@
 #include <fstream>
 #include <utility>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 using nlohmann::json;
 
@@ -59,4 +59,4 @@ void StepLedger::Write() const {
   WriteFileAtomically(file_, steps_.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace sfm {
+namespace nerf::sfm {
 
 // Which steps of a long job are finished, kept in a JSON file, so that a second call goes on where
 // the first one ended. Steps depend on one another in the order in which they are begun: beginning
@@ -37,4 +37,4 @@ class StepLedger {
   nlohmann::json steps_ = nlohmann::json::array();
 };
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
-#include "sfm/camera_intrinsics.h"
-#include "sfm/image_files.h"
-#include "sfm/input_error.h"
-#include "sfm/json_fields.h"
-#include "sfm/rigid_pose.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/json_fields.h"
+#include "nerf/image/image_files.h"
+#include "nerf/scene/camera_intrinsics.h"
+#include "nerf/scene/rigid_pose.h"
 #include "sfm/transforms_json_camera.h"
 
 namespace fs = std::filesystem;
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 // What nerfstudio calls the lists of its splits; an image in two belongs to the first.
@@ -209,4 +209,4 @@ PosedImages ReadTransformsJson(const fs::path& file, AbsentImages absent) {
   return std::move(reader).Result(file);
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 // Reads a transforms.json in the flavours of instant-ngp, nerfstudio and Blender (NeRF-synthetic):
 // world_from_camera matrices with OpenGL camera axes, lenses for the whole file or frame by frame
@@ -33,4 +33,4 @@ PosedImages ReadTransformsJson(const std::filesystem::path& file,
 // appears whole or not at all. Throws InputError when it cannot be written.
 void WriteTransformsJson(const PosedImages& posed, const std::filesystem::path& file);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

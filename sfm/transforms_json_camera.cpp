@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "sfm/camera_intrinsics.h"
-#include "sfm/camera_models.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/scene/camera_intrinsics.h"
+#include "nerf/scene/camera_models.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 // Keys of a frame, and those of the whole file behind them.
@@ -218,4 +218,4 @@ nlohmann::json JsonFromCamera(const Camera& camera) {
   }
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sfm/image_files.h"
-#include "sfm/json_fields.h"
-#include "sfm/posed_images.h"
+#include "nerf/base/json_fields.h"
+#include "nerf/image/image_files.h"
+#include "nerf/scene/posed_images.h"
 
-namespace sfm {
+namespace nerf::sfm {
 
 // The lens of one frame of a transforms.json; a key of the frame overrides the same key of the
 // file. Understands
@@ -26,4 +26,4 @@ Camera CameraFromJson(const JsonFields& frame, const JsonFields& file, const Ima
 // written as camera_model with camera_params.
 nlohmann::json JsonFromCamera(const Camera& camera);
 
-}  // namespace sfm
+}  // namespace nerf::sfm

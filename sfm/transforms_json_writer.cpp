@@ -1,14 +1,14 @@
 #include <nlohmann/json.hpp>
 
-#include "sfm/atomic_file.h"
-#include "sfm/input_error.h"
-#include "sfm/rigid_pose.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/scene/rigid_pose.h"
 #include "sfm/transforms_json.h"
 #include "sfm/transforms_json_camera.h"
 
 namespace fs = std::filesystem;
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 // Follows links of the folders, as ".." in the result would, but keeps the image's own name.
@@ -74,4 +74,4 @@ void WriteTransformsJson(const PosedImages& posed, const fs::path& file) {
   }
 }
 
-}  // namespace sfm
+}  // namespace nerf::sfm

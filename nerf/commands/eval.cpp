@@ -10,23 +10,23 @@
 #include <string>
 #include <vector>
 
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/progress.h"
+#include "nerf/base/stopwatch.h"
 #include "nerf/commands/commands.h"
-#include "nerf/commands/effects_worth.h"
 #include "nerf/commands/eval_scores.h"
 #include "nerf/commands/threads.h"
-#include "nerf/data/camera.h"
-#include "nerf/data/dataset.h"
-#include "nerf/data/image_io.h"
-#include "nerf/data/image_metrics.h"
 #include "nerf/effects/exposure_fit.h"
+#include "nerf/image/image_io.h"
+#include "nerf/image/image_metrics.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/model/view_renderer.h"
 #include "nerf/output/contact_sheet.h"
+#include "nerf/pipeline/effects_worth.h"
 #include "nerf/render/image_renderer.h"
-#include "nerf/stopwatch.h"
-#include "nerf/train/run_folder.h"
-#include "nerf/train/view_renderer.h"
-#include "sfm/atomic_file.h"
-#include "sfm/input_error.h"
-#include "sfm/progress.h"
+#include "nerf/scene/camera.h"
+#include "nerf/scene/dataset.h"
 
 namespace nerf {
 namespace {
@@ -48,9 +48,9 @@ struct EvalArguments {
 // Of the contact sheet: whoever looks at pictures looks at no more, and memory stays bounded.
 constexpr std::size_t kMostRows = 50;
 
-sfm::Split SplitFromName(const std::string& name) {
-  if (name == "train") return sfm::Split::kTrain;
-  return name == "validation" ? sfm::Split::kValidation : sfm::Split::kTest;
+Split SplitFromName(const std::string& name) {
+  if (name == "train") return Split::kTrain;
+  return name == "validation" ? Split::kValidation : Split::kTest;
 }
 
 // Nobody knows the exposure of a photograph that training never saw: it is fitted, one gain a
@@ -82,29 +82,29 @@ void RunEval(const EvalArguments& arguments) {
   const std::shared_ptr<RayRenderer> renderer = ViewRenderer(run.model, arguments.quality);
   const fs::path output =
       arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
-  sfm::MakeOutputFolder(output);
+  MakeOutputFolder(output);
   if (arguments.effects) {
     MeasureEffects(run, arguments.effects_steps, arguments.json, output);
     return;
   }
 
-  std::vector<const sfm::PosedImage*> images;
+  std::vector<const PosedImage*> images;
   for (const auto& image : run.posed.images) {
     if (image.split == SplitFromName(arguments.split)) images.push_back(&image);
   }
   if (images.empty()) {
-    throw sfm::InputError("{}: the run has no {} images; choose another --split", arguments.run,
-                          arguments.split);
+    throw InputError("{}: the run has no {} images; choose another --split", arguments.run,
+                     arguments.split);
   }
 
   const SceneFacts& scene = run.model.scene;
   const int downscale = run.model.config.data.downscale;
   const bool fit_exposure = arguments.fit_exposure || run.model.exposure;
-  sfm::ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
+  ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
   std::vector<Score> scores;
   std::vector<ContactSheetRow> rows;
   Cost cost;
-  for (const sfm::PosedImage* image : images) {
+  for (const PosedImage* image : images) {
     Image truth;
     std::vector<std::uint32_t> whole;
     LapTimer reading;
@@ -113,7 +113,7 @@ void RunEval(const EvalArguments& arguments) {
           LoadPhotograph(run.posed, *image, {downscale, MeaningOf(run.model.config.effects.masks)});
       truth = OnWhite(photograph.pixels);
       whole = std::move(photograph.whole);
-    } catch (const sfm::InputError& error) {
+    } catch (const InputError& error) {
       spdlog::warn("{}; left out", error.what());
       continue;
     }
@@ -140,8 +140,7 @@ void RunEval(const EvalArguments& arguments) {
                  images.size() - scores.size(), images.size());
   }
   if (scores.empty()) {
-    throw sfm::InputError("{}: none of the {} images could be read", arguments.run,
-                          arguments.split);
+    throw InputError("{}: none of the {} images could be read", arguments.run, arguments.split);
   }
 
   nlohmann::json result = JsonFromScores(scores, cost);
@@ -154,7 +153,7 @@ void RunEval(const EvalArguments& arguments) {
                  {"left_out", images.size() - scores.size()}});
   // Names of files need not be UTF-8.
   const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
-  sfm::WriteFileAtomically(output / "eval.json", text + "\n");
+  WriteFileAtomically(output / "eval.json", text + "\n");
   WriteImage(output / "contact_sheet.png", ContactSheet(rows));
   if (arguments.json) {
     fmt::print("{}\n", text);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/peak_memory.h"
+#include "nerf/base/peak_memory.h"
 
 namespace nerf {
 namespace {

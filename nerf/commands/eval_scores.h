@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "nerf/render/image_renderer.h"
-#include "nerf/stage_seconds.h"
+#include "nerf/render/stage_seconds.h"
 
 namespace nerf {
 

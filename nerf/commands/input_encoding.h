@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "nerf/appearance/linear_image.h"
 #include "nerf/commands/choice_option.h"
+#include "nerf/image/linear_image.h"
 
 namespace nerf {
 

@@ -1,5 +1,3 @@
-#include "nerf/inspect/inspect.h"
-
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
@@ -9,14 +7,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/threads.h"
-#include "nerf/data/image_io.h"
-#include "nerf/inspect/picture.h"
+#include "nerf/effects/inspection.h"
+#include "nerf/effects/inspection_picture.h"
+#include "nerf/image/image_io.h"
 #include "sfm/masks.h"
 #include "sfm/photo_folder.h"
 #include "sfm/pose_input.h"
-#include "sfm/progress.h"
 
 namespace nerf {
 namespace {
@@ -28,7 +27,7 @@ struct InspectArguments {
   std::string picture;
 };
 
-nlohmann::json JsonFrom(const sfm::PosedImages& posed, const Inspection& inspection) {
+nlohmann::json JsonFrom(const PosedImages& posed, const Inspection& inspection) {
   nlohmann::json verdicts = nlohmann::json::array(), exposures = nlohmann::json::object();
   for (const Verdict& v : inspection.verdicts) {
     nlohmann::json one = {{"effect", v.effect}, {"evidence", v.evidence}, {"decided", v.decided},
@@ -43,11 +42,11 @@ nlohmann::json JsonFrom(const sfm::PosedImages& posed, const Inspection& inspect
 }
 
 // Plain photographs, whose poses are yet to be found.
-sfm::PosedImages WithoutPoses(const std::filesystem::path& folder) {
-  sfm::PosedImages photographs;
+PosedImages WithoutPoses(const std::filesystem::path& folder) {
+  PosedImages photographs;
   photographs.source = folder;
   for (const std::filesystem::path& path : sfm::ListPhotos(folder)) {
-    sfm::PosedImage image;
+    PosedImage image;
     image.name = path.filename().string();
     image.path = path;
     image.upright_by_exif = true;
@@ -60,12 +59,11 @@ void RunInspect(const InspectArguments& arguments) {
   UseThreads(arguments.threads);
   const sfm::InputLocation location = sfm::FindInput(arguments.input);
   const bool has_poses = location.kind != sfm::InputKind::kPhotos;
-  sfm::PosedImages posed =
-      has_poses ? sfm::ReadPosedInput(location) : WithoutPoses(location.images);
+  PosedImages posed = has_poses ? sfm::ReadPosedInput(location) : WithoutPoses(location.images);
   sfm::FindMasks(posed);
   Inspection inspection;
   if (has_poses) {
-    sfm::ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
+    ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
     inspection = Inspect(posed, [&](int read) { progress.Update(read); });
     progress.Finish();
   } else {

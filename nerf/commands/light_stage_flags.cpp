@@ -2,9 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "nerf/commands/interrupt.h"
+#include "nerf/base/interrupt.h"
+#include "nerf/base/stopwatch.h"
 #include "nerf/commands/threads.h"
-#include "nerf/stopwatch.h"
 
 namespace nerf {
 

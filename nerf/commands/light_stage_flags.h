@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "nerf/appearance/light_stage.h"
+#include "nerf/synthetic/light_stage.h"
 
 namespace nerf {
 
@@ -18,7 +18,7 @@ struct LightStageFlags {
 // To be added after the flags of the ordinary sample, most of which it excludes.
 void AddLightStageFlags(CLI::App& command, LightStageFlags& flags);
 
-// Writes the capture and says so. Throws sfm::InputError, and CLI::RuntimeError after Ctrl-C.
+// Writes the capture and says so. Throws InputError, and CLI::RuntimeError after Ctrl-C.
 void RunLightStage(const std::filesystem::path& folder, const LightStageFlags& flags, int width,
                    int height, int threads);
 

@@ -6,14 +6,14 @@
 #include <memory>
 #include <string>
 
-#include "nerf/appearance/photometric_folder.h"
-#include "nerf/appearance/photometric_maps.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/stopwatch.h"
+#include "nerf/capture/photometric_folder.h"
+#include "nerf/capture/photometric_maps.h"
 #include "nerf/commands/choice_option.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/input_encoding.h"
 #include "nerf/commands/threads.h"
-#include "nerf/stopwatch.h"
-#include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
@@ -31,7 +31,7 @@ struct StereoArguments {
 
   void Check() const {
     stereo.Check();
-    if (memory_mb < 1) throw sfm::InputError("--memory-mb is {}: choose 1 or more", memory_mb);
+    if (memory_mb < 1) throw InputError("--memory-mb is {}: choose 1 or more", memory_mb);
   }
 };
 

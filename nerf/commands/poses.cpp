@@ -6,10 +6,10 @@
 #include <memory>
 #include <string>
 
+#include "nerf/base/input_error.h"
+#include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "sfm/colmap_runner.h"
-#include "sfm/input_error.h"
-#include "sfm/progress.h"
 #include "sfm/transforms_json.h"
 
 namespace nerf {
@@ -54,11 +54,11 @@ void RunPoses(const PosesArguments& arguments) {
   const fs::path transforms = output / "transforms.json";
   const fs::path workspace = output / "colmap";
   if (fs::exists(transforms) && !fs::exists(workspace / "steps.json")) {
-    throw sfm::InputError("{}: is there already, and not from nerf poses; give another -o",
-                          transforms.string());
+    throw InputError("{}: is there already, and not from nerf poses; give another -o",
+                     transforms.string());
   }
   sfm::ColmapReport report;
-  const sfm::PosedImages posed =
+  const PosedImages posed =
       sfm::PosesFromPhotos(arguments.folder, workspace, arguments.colmap, &report);
   sfm::WriteTransformsJson(posed, transforms);
   PrintReport(report, transforms);

@@ -1,4 +1,4 @@
-#include "nerf/appearance/relight.h"
+#include "nerf/capture/relight.h"
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -11,17 +11,17 @@
 #include <optional>
 #include <string>
 
-#include "nerf/appearance/light_name.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/interrupt.h"
+#include "nerf/base/stopwatch.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/input_encoding.h"
-#include "nerf/commands/interrupt.h"
 #include "nerf/commands/threads.h"
-#include "nerf/data/image_io.h"
-#include "nerf/data/image_metrics.h"
+#include "nerf/image/image_io.h"
+#include "nerf/image/image_metrics.h"
+#include "nerf/light/light_name.h"
 #include "nerf/output/video.h"
-#include "nerf/stopwatch.h"
-#include "sfm/atomic_file.h"
-#include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
@@ -48,18 +48,18 @@ struct RelightArguments {
 
   void Check() const {
     if (frames < 0 || frames > 10'000) {
-      throw sfm::InputError("--frames is {}: choose a number from 1 to 10000", frames);
+      throw InputError("--frames is {}: choose a number from 1 to 10000", frames);
     }
     if (!(std::abs(rotate) <= 360)) {
-      throw sfm::InputError("--rotate is {}: choose -360 to 360 degrees", rotate);
+      throw InputError("--rotate is {}: choose -360 to 360 degrees", rotate);
     }
     if (exposure && !(std::abs(*exposure) <= kMostStops)) {
-      throw sfm::InputError("--exposure is {}: choose -{} to {} stops", *exposure, kMostStops,
-                            kMostStops);
+      throw InputError("--exposure is {}: choose -{} to {} stops", *exposure, kMostStops,
+                       kMostStops);
     }
-    if (memory_mb < 1) throw sfm::InputError("--memory-mb is {}: choose 1 or more", memory_mb);
+    if (memory_mb < 1) throw InputError("--memory-mb is {}: choose 1 or more", memory_mb);
     if (frames > 0 && !FfmpegIsInstalled()) {
-      throw sfm::InputError("--frames needs the ffmpeg program: install it");
+      throw InputError("--frames needs the ffmpeg program: install it");
     }
   }
 };
@@ -68,8 +68,8 @@ struct RelightArguments {
 EnvironmentMap OpenEnvironment(const std::string& name) {
   if (!fs::exists(name)) {
     if (const auto color = ColorOfLight(name)) return EnvironmentMap::Uniform(*color);
-    throw sfm::InputError("--environment {}: neither a file nor a light's name; names are {}", name,
-                          kLightNames);
+    throw InputError("--environment {}: neither a file nor a light's name; names are {}", name,
+                     kLightNames);
   }
   return EnvironmentMap::Read(name);
 }
@@ -78,16 +78,15 @@ EnvironmentMap OpenEnvironment(const std::string& name) {
 Image OpenTruth(const fs::path& file, const OlatCapture& capture) {
   Image truth = ReadLinearImage(file, InputEncoding::kAuto);
   if (truth.width == capture.width && truth.height == capture.height) return truth;
-  throw sfm::InputError("--truth {}: is {} x {} pixels, the capture's are {} x {}", file.string(),
-                        truth.width, truth.height, capture.width, capture.height);
+  throw InputError("--truth {}: is {} x {} pixels, the capture's are {} x {}", file.string(),
+                   truth.width, truth.height, capture.width, capture.height);
 }
 
 OlatCapture OpenCapture(const RelightArguments& arguments) {
   OlatCapture capture = FindOlatCapture(arguments.capture, arguments.olat);
   if (capture.lights.size() < kFewestLights) {
-    throw sfm::InputError("{}: images under {} light{}; relighting needs {} or more",
-                          arguments.capture, capture.lights.size(),
-                          capture.lights.size() == 1 ? "" : "s", kFewestLights);
+    throw InputError("{}: images under {} light{}; relighting needs {} or more", arguments.capture,
+                     capture.lights.size(), capture.lights.size() == 1 ? "" : "s", kFewestLights);
   }
   return capture;
 }
@@ -119,7 +118,7 @@ void RunRelight(const RelightArguments& arguments) {
                  frames > 1 ? "up to " : "", 100 * left_out, arguments.environment);
   }
   const fs::path frame_folder = folder / "frames";
-  sfm::MakeOutputFolder(arguments.frames > 0 ? frame_folder : folder);
+  MakeOutputFolder(arguments.frames > 0 ? frame_folder : folder);
   // One exposure for the whole film: by its first frame.
   std::optional<double> stops = arguments.exposure;
   std::optional<double> psnr;

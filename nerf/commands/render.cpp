@@ -9,22 +9,22 @@
 #include <optional>
 #include <string>
 
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/shots.h"
 #include "nerf/commands/threads.h"
-#include "nerf/data/dataset.h"
-#include "nerf/data/image_io.h"
 #include "nerf/effects/exposure_fit.h"
+#include "nerf/geometry/rays.h"
+#include "nerf/image/image_io.h"
+#include "nerf/model/dial.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/model/view_renderer.h"
 #include "nerf/output/color_map.h"
 #include "nerf/output/video.h"
 #include "nerf/render/image_renderer.h"
-#include "nerf/sampling/rays.h"
-#include "nerf/train/dial.h"
-#include "nerf/train/run_folder.h"
-#include "nerf/train/view_renderer.h"
-#include "sfm/atomic_file.h"
-#include "sfm/input_error.h"
-#include "sfm/progress.h"
+#include "nerf/scene/dataset.h"
 
 namespace nerf {
 namespace {
@@ -85,11 +85,11 @@ double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArgumen
                                ? "the exact picture"
                                : fmt::format("{:.1f} dB from the exact picture", position.psnr);
   fmt::print("quality {:.2f}: about {} a frame, {}\n", position.quality,
-             sfm::FormatSeconds(position.seconds), loss);
+             FormatSeconds(position.seconds), loss);
   std::fflush(stdout);
   if (position.seconds > arguments.seconds_per_frame.value_or(position.seconds)) {
     spdlog::warn("no quality is as fast as {} a frame; --downscale makes smaller pictures",
-                 sfm::FormatSeconds(*arguments.seconds_per_frame));
+                 FormatSeconds(*arguments.seconds_per_frame));
   }
   return position.quality;
 }
@@ -97,16 +97,16 @@ double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArgumen
 void RunRender(const RenderArguments& arguments) {
   UseThreads(arguments.threads);
   if (arguments.shots.downscale && *arguments.shots.downscale < 1) {
-    throw sfm::InputError("--downscale {}: use 1 or more", *arguments.shots.downscale);
+    throw InputError("--downscale {}: use 1 or more", *arguments.shots.downscale);
   }
   if (arguments.seconds_per_frame && !(*arguments.seconds_per_frame > 0)) {
-    throw sfm::InputError("--seconds-per-frame {}: use more than 0", *arguments.seconds_per_frame);
+    throw InputError("--seconds-per-frame {}: use more than 0", *arguments.seconds_per_frame);
   }
   if (!(arguments.quality >= 0 && arguments.quality <= 1)) {
-    throw sfm::InputError("--quality {}: use 0 (fast) to 1 (exact)", arguments.quality);
+    throw InputError("--quality {}: use 0 (fast) to 1 (exact)", arguments.quality);
   }
   if (arguments.fps && !(*arguments.fps > 0 && *arguments.fps <= 1000)) {
-    throw sfm::InputError("--fps {}: use more than 0, at most 1000", *arguments.fps);
+    throw InputError("--fps {}: use more than 0, at most 1000", *arguments.fps);
   }
   const OpenedRun run = OpenRun(arguments.run);
   const SceneFacts& scene = run.model.scene;
@@ -116,7 +116,7 @@ void RunRender(const RenderArguments& arguments) {
   const fs::path output = arguments.output.empty()
                               ? fs::path(arguments.run) / "renders" / list.folder
                               : fs::path(arguments.output);
-  sfm::MakeOutputFolder(output);
+  MakeOutputFolder(output);
   for (const Shot& shot : list.shots) {
     CheckCameraCentre(
         scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera).translation(),
@@ -129,7 +129,7 @@ void RunRender(const RenderArguments& arguments) {
   for (const Shot& shot : list.shots) {
     pixels += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
   }
-  sfm::ProgressLine progress("rendering", pixels);
+  ProgressLine progress("rendering", pixels);
   for (const Shot& shot : list.shots) {
     const Eigen::Isometry3d normalized_from_camera =
         scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera);

@@ -7,7 +7,7 @@
 
 #include "nerf/commands/commands.h"
 #include "nerf/commands/light_stage_flags.h"
-#include "nerf/sample/sample_folder.h"
+#include "nerf/synthetic/sample_folder.h"
 
 namespace nerf {
 namespace {

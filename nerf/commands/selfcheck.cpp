@@ -7,8 +7,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
-#include "sfm/progress.h"
 
 namespace nerf {
 namespace {
@@ -59,7 +59,7 @@ void PrintTable(const std::vector<CaseResult>& results) {
 
 void RunSelfcheck(bool json) {
   const std::vector<NumericCase> cases = NumericCases();
-  sfm::ProgressLine progress("checking", static_cast<std::int64_t>(cases.size()));
+  ProgressLine progress("checking", static_cast<std::int64_t>(cases.size()));
   const std::vector<CaseResult> results = MeasureCases(cases, [&](std::int64_t measured) {
     progress.Update(measured, cases[static_cast<std::size_t>(measured) - 1].name);
   });

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "nerf/data/camera.h"
+#include "nerf/base/input_error.h"
 #include "nerf/output/camera_path.h"
 #include "nerf/output/camera_path_json.h"
 #include "nerf/output/video.h"
-#include "sfm/input_error.h"
+#include "nerf/scene/camera.h"
 
 namespace nerf {
 namespace {
@@ -25,7 +25,7 @@ std::string FileStem(const std::string& image_name) {
   return stem;
 }
 
-Shot ShotOf(const OpenedRun& run, const sfm::PosedImage& image, int downscale) {
+Shot ShotOf(const OpenedRun& run, const PosedImage& image, int downscale) {
   return {FileStem(image.name), image.world_from_camera,
           Downscaled(run.posed.cameras[image.camera], downscale)};
 }
@@ -49,8 +49,8 @@ ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs:
       return image.name == options.image || FileStem(image.name) == options.image;
     });
     if (found == run.posed.images.end()) {
-      throw sfm::InputError("--image {}: the run has no such photograph; names stand in {}",
-                            options.image, PosesPath(folder).string());
+      throw InputError("--image {}: the run has no such photograph; names stand in {}",
+                       options.image, PosesPath(folder).string());
     }
     return {{ShotOf(run, *found, downscale)}, "image", {}};
   }
@@ -78,12 +78,12 @@ ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs:
                        options.downscale.value_or(1));
   }
   ShotList list{{}, "held-out", {}};
-  for (const sfm::PosedImage& image : run.posed.images) {
-    if (image.split == sfm::Split::kTest) list.shots.push_back(ShotOf(run, image, downscale));
+  for (const PosedImage& image : run.posed.images) {
+    if (image.split == Split::kTest) list.shots.push_back(ShotOf(run, image, downscale));
   }
   if (list.shots.empty()) {
-    throw sfm::InputError("{}: the run holds out no images; use --path, --pose or --image",
-                          folder.string());
+    throw InputError("{}: the run holds out no images; use --path, --pose or --image",
+                     folder.string());
   }
   return list;
 }

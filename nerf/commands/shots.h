@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "nerf/train/run_folder.h"
-#include "sfm/posed_images.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 
@@ -24,7 +24,7 @@ struct ShotOptions {
 struct Shot {
   std::string name;
   Eigen::Isometry3d world_from_camera;
-  sfm::Camera camera;
+  Camera camera;
 };
 
 struct ShotList {
@@ -34,7 +34,7 @@ struct ShotList {
 };
 
 //   folder  of the run, for errors
-// Throws sfm::InputError where there is no such view.
+// Throws InputError where there is no such view.
 ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options,
                      const std::filesystem::path& folder);
 

@@ -9,15 +9,15 @@
 #include <memory>
 #include <string>
 
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/interrupt.h"
+#include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
-#include "nerf/commands/interrupt.h"
 #include "nerf/commands/threads.h"
-#include "nerf/commands/training_input.h"
+#include "nerf/pipeline/training_input.h"
 #include "nerf/study/report.h"
-#include "sfm/atomic_file.h"
-#include "sfm/input_error.h"
 #include "sfm/pose_input.h"
-#include "sfm/progress.h"
 
 namespace nerf {
 namespace {
@@ -52,31 +52,31 @@ void RunStudy(const StudyArguments& arguments) {
   const int threads = UseThreads(arguments.threads);
   const StudyOptions& options = arguments.options;
   if (!(options.budget >= kShortestStudy && options.budget <= kLongestStudy)) {
-    throw sfm::InputError("--budget: {} s; use 10m to 720h", options.budget);
+    throw InputError("--budget: {} s; use 10m to 720h", options.budget);
   }
   if (options.downscale < 1) {
-    throw sfm::InputError("--downscale {}: use 1 or more", options.downscale);
+    throw InputError("--downscale {}: use 1 or more", options.downscale);
   }
   sfm::FindInput(arguments.input);  // a wrong input must not leave an empty folder behind
   const fs::path folder = arguments.output;
-  sfm::MakeOutputFolder(folder);
-  const sfm::PosedImages posed = FindPoses(arguments.input, folder, threads);
+  MakeOutputFolder(folder);
+  const PosedImages posed = FindPoses(arguments.input, folder, threads);
   WarnOfMissing(posed);
   Study study(posed, options, folder);
   fmt::print("{} settings in {} (poses not counted); Ctrl-C stops, the same command goes on\n",
-             study.Settings(), sfm::FormatDuration(options.budget));
-  const bool done = study.Run(
-      StopOnInterrupt(), [&](std::size_t number, const StudySetting& setting, double seconds) {
-        fmt::print("{:>2} of {}: {}, {} of training\n", number + 1, study.Settings(), setting.name,
-                   sfm::FormatSeconds(seconds));
-        std::fflush(stdout);
-      });
+             study.Settings(), FormatDuration(options.budget));
+  const bool done = study.Run(StopOnInterrupt(),
+                              [&](std::size_t number, const StudySetting& setting, double seconds) {
+                                fmt::print("{:>2} of {}: {}, {} of training\n", number + 1,
+                                           study.Settings(), setting.name, FormatSeconds(seconds));
+                                std::fflush(stdout);
+                              });
   if (!done) {
     fmt::print("stopped; the settings that are done stand in {}\n", folder.string());
     return;
   }
   const fs::path page = folder / "study.html";
-  sfm::WriteFileAtomically(page, StudyReport(study.Results(), folder / "crops"));
+  WriteFileAtomically(page, StudyReport(study.Results(), folder / "crops"));
   PrintFront(study.Results());
   fmt::print("{}\n", page.string());
 }

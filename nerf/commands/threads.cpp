@@ -2,14 +2,14 @@
 
 #include <ATen/Parallel.h>
 
-#include "nerf/parallel.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
 
 namespace nerf {
 
 int UseThreads(int threads) {
   if (threads < 0) {
-    throw sfm::InputError("--threads {}: use 1 or more, or 0 for all cores", threads);
+    throw InputError("--threads {}: use 1 or more, or 0 for all cores", threads);
   }
   // LibTorch's own default has been seen to be one thread on a machine with two.
   const int used = threads > 0 ? threads : AvailableCores();

@@ -3,10 +3,10 @@
 #include <memory>
 #include <string>
 
+#include "nerf/base/stopwatch.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/threads.h"
-#include "nerf/commands/training_run.h"
-#include "nerf/stopwatch.h"
+#include "nerf/pipeline/training_run.h"
 
 namespace nerf {
 

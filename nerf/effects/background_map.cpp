@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "nerf/base/input_error.h"
 #include "nerf/kernels/activations.h"
-#include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
@@ -17,7 +17,7 @@ constexpr float kExpLimit = 15.0f;
 
 void BackgroundOptions::Check() const {
   if (resolution >= 2 && resolution <= 1024) return;
-  throw sfm::InputError("config: effects.background.resolution is {}; use 2 to 1024", resolution);
+  throw InputError("config: effects.background.resolution is {}; use 2 to 1024", resolution);
 }
 
 BackgroundMap::Texels BackgroundMap::TexelsOf(std::span<const float, 3> direction, int rows) {

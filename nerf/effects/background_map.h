@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "nerf/data/image.h"
+#include "nerf/image/image.h"
 
 namespace nerf {
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <string>
 
-#include "nerf/data/camera.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/scene/camera.h"
 
 namespace nerf {
 namespace {
@@ -18,27 +18,27 @@ constexpr double kLargestError = 2;  // pixels
 
 void DepthOptions::Check() const {
   if (!(share >= 0 && share <= 0.5)) {
-    throw sfm::InputError("config: effects.depth.share is {}; use 0 to 0.5", share);
+    throw InputError("config: effects.depth.share is {}; use 0 to 0.5", share);
   }
   if (!(weight >= 0)) {
-    throw sfm::InputError("config: effects.depth.weight is {}; use 0 or more", weight);
+    throw InputError("config: effects.depth.weight is {}; use 0 or more", weight);
   }
   if (!(delta > 0)) {
-    throw sfm::InputError("config: effects.depth.delta is {}; use more than 0", delta);
+    throw InputError("config: effects.depth.delta is {}; use more than 0", delta);
   }
 }
 
-void AddSeenPoints(const sfm::PosedImages& sparse,
-                   const sfm::SceneNormalization& normalized_from_world, Dataset& data) {
+void AddSeenPoints(const PosedImages& sparse, const SceneNormalization& normalized_from_world,
+                   Dataset& data) {
   std::map<std::string, View*> views;
   for (View& view : data.train) {
     views[view.name] = &view;
     view.points.clear();
   }
-  for (const sfm::SparsePoint& point : sparse.points) {
+  for (const SparsePoint& point : sparse.points) {
     if (point.track.size() < kFewestSightings || point.reprojection_error > kLargestError) continue;
     const Eigen::Vector3d x = normalized_from_world.NormalizedFromWorld(point.x_in_world);
-    for (const sfm::TrackElement& seen : point.track) {
+    for (const TrackElement& seen : point.track) {
       const auto found = views.find(sparse.images[seen.image].name);
       if (found == views.end()) continue;
       View& view = *found->second;

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "nerf/data/dataset.h"
-#include "sfm/posed_images.h"
-#include "sfm/scene_normalization.h"
+#include "nerf/scene/dataset.h"
+#include "nerf/scene/posed_images.h"
+#include "nerf/scene/scene_normalization.h"
 
 namespace nerf {
 
@@ -28,8 +28,8 @@ struct DepthOptions {
 // Gives each view that is trained on the points that it sees, and no others: those that three
 // photographs have seen within two pixels, in the pixel to which its camera projects them.
 //   sparse  with points and tracks; its images are the views by name
-void AddSeenPoints(const sfm::PosedImages& sparse,
-                   const sfm::SceneNormalization& normalized_from_world, Dataset& data);
+void AddSeenPoints(const PosedImages& sparse, const SceneNormalization& normalized_from_world,
+                   Dataset& data);
 
 // What it costs that light comes from a distance t where a point stands at `target`:
 // e^2 / (e^2 + delta^2) with e = t / target - 1. Far from the point as much as seeing nothing, 1:

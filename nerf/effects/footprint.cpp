@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 
 namespace nerf {
 namespace {
@@ -20,7 +20,7 @@ constexpr float kSharp = 4;
 
 void FootprintOptions::Check() const {
   if (pixels >= 0 && pixels <= 8) return;
-  throw sfm::InputError("config: effects.footprint.pixels is {}; use 0 to 8", pixels);
+  throw InputError("config: effects.footprint.pixels is {}; use 0 to 8", pixels);
 }
 
 std::vector<float> Footprints(const RayBatch& rays, std::span<const std::int64_t> ray,

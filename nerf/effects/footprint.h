@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "nerf/geometry/rays.h"
 #include "nerf/kernels/hash_encoding.h"
-#include "nerf/sampling/rays.h"
 
 namespace nerf {
 

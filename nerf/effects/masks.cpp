@@ -1,12 +1,12 @@
 #include "nerf/effects/masks.h"
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 
 namespace nerf {
 
 void MaskOptions::Check() const {
   if (meaning == "ignore" || meaning == "empty") return;
-  throw sfm::InputError("config: effects.masks.meaning is {}; use ignore or empty", meaning);
+  throw InputError("config: effects.masks.meaning is {}; use ignore or empty", meaning);
 }
 
 std::optional<MaskMeaning> MeaningOf(const std::optional<MaskOptions>& masks) {

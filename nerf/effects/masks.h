@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "nerf/data/mask.h"
+#include "nerf/image/mask.h"
 
 namespace nerf {
 

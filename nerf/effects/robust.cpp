@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 
 namespace nerf {
 
@@ -13,7 +13,7 @@ RobustOptions RobustOptions::At(double progress) const {
 
 void RobustOptions::Check() const {
   if (scale > 0) return;
-  throw sfm::InputError("config: effects.robust.scale is {}; use more than 0", scale);
+  throw InputError("config: effects.robust.scale is {}; use more than 0", scale);
 }
 
 }  // namespace nerf

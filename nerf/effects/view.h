@@ -1,8 +1,9 @@
 #pragma once
 
-#include "nerf/field/field_options.h"
-
 namespace nerf {
+
+// Whether colour depends on the direction from which it is seen, or, as a matt surface's, does not.
+enum class ColorModel { kDiffuse, kByDirection };
 
 // Light that a surface sends into one direction and not into another: gloss, mirrors. With it the
 // colour network sees the direction, as spherical harmonics (nerf/kernels/direction_encoding.h);

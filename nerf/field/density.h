@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nerf/libtorch.h"
+#include "nerf/field/libtorch.h"
 
 namespace nerf {
 

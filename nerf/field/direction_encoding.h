@@ -1,7 +1,7 @@
 #pragma once
 
+#include "nerf/field/libtorch.h"
 #include "nerf/kernels/direction_encoding.h"
-#include "nerf/libtorch.h"
 
 namespace nerf {
 

@@ -2,8 +2,8 @@
 
 #include <ATen/CPUGeneratorImpl.h>
 
+#include "nerf/base/parallel.h"
 #include "nerf/field/tensor_span.h"
-#include "nerf/parallel.h"
 
 namespace nerf {
 namespace {

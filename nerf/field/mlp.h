@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "nerf/libtorch.h"
+#include "nerf/field/libtorch.h"
 
 namespace nerf {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "nerf/base/random.h"
 #include "nerf/field/density.h"
-#include "nerf/sampling/random.h"
 
 namespace nerf {
 

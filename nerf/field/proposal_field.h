@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "nerf/field/hash_encoding.h"
+#include "nerf/field/libtorch.h"
 #include "nerf/field/mlp.h"
-#include "nerf/libtorch.h"
 #include "nerf/sampling/proposal_options.h"
 
 namespace nerf {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "nerf/base/random.h"
 #include "nerf/field/activations.h"
 #include "nerf/field/density.h"
 #include "nerf/field/direction_encoding.h"
-#include "nerf/sampling/random.h"
 
 namespace nerf {
 namespace {

@@ -3,11 +3,12 @@
 #include <memory>
 #include <vector>
 
-#include "nerf/data/image.h"
-#include "nerf/field/field_options.h"
+#include "nerf/config/field_options.h"
+#include "nerf/effects/view.h"
 #include "nerf/field/hash_encoding.h"
+#include "nerf/field/libtorch.h"
 #include "nerf/field/mlp.h"
-#include "nerf/libtorch.h"
+#include "nerf/image/image.h"
 
 namespace nerf {
 

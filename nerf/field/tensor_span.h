@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "nerf/libtorch.h"
+#include "nerf/field/libtorch.h"
 
 namespace nerf {
 

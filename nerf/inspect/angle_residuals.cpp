@@ -13,7 +13,7 @@ constexpr int kAngles = 36;  // up to 180 degrees
 constexpr int kFewestAngles = 5, kFewestOfAngle = 30;
 
 // From a point to the camera of a photograph that sees it.
-Vector3d DirectionToCamera(const sfm::PosedImages& posed, const Sighting& s) {
+Vector3d DirectionToCamera(const PosedImages& posed, const Sighting& s) {
   return (posed.images[s.photograph].world_from_camera.translation() -
           posed.points[s.point].x_in_world)
       .normalized();
@@ -21,8 +21,8 @@ Vector3d DirectionToCamera(const sfm::PosedImages& posed, const Sighting& s) {
 
 }  // namespace
 
-std::vector<AngleResiduals> ResidualsByAngle(const sfm::PosedImages& posed,
-                                             const TrackColors& colors, const PhotographFit& fit) {
+std::vector<AngleResiduals> ResidualsByAngle(const PosedImages& posed, const TrackColors& colors,
+                                             const PhotographFit& fit) {
   std::vector<Vector3d> sum(posed.points.size(), Vector3d::Zero());
   std::vector<int> count(posed.points.size(), 0);
   for (const Sighting& s : colors.seen) {

@@ -4,7 +4,7 @@
 
 #include "nerf/inspect/photograph_fit.h"
 #include "nerf/inspect/track_colors.h"
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 
@@ -22,7 +22,7 @@ struct AngleResiduals {
 // Grows with the angle where surfaces are glossy; stays as it is where only noise is left over.
 //   returns  by angle, 5 degrees each, only those with enough sightings; of points that are seen
 //            often
-std::vector<AngleResiduals> ResidualsByAngle(const sfm::PosedImages& posed,
-                                             const TrackColors& colors, const PhotographFit& fit);
+std::vector<AngleResiduals> ResidualsByAngle(const PosedImages& posed, const TrackColors& colors,
+                                             const PhotographFit& fit);
 
 }  // namespace nerf

@@ -5,13 +5,13 @@
 #include <numeric>
 #include <optional>
 
-#include "nerf/data/exif_exposure.h"
+#include "nerf/image/exif_exposure.h"
 
 namespace nerf {
 
-ExifStops ReadExifStops(const sfm::PosedImages& posed) {
+ExifStops ReadExifStops(const PosedImages& posed) {
   ExifStops all;
-  for (const sfm::PosedImage& image : posed.images) {
+  for (const PosedImage& image : posed.images) {
     const std::optional<ExifExposure> exposure = ReadExifExposure(image.path);
     if (!exposure) return {};
     if (!exposure->contradiction.empty()) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 
@@ -15,6 +15,6 @@ struct ExifStops {
   std::string contradiction;  // one line that names the file, or empty
 };
 
-ExifStops ReadExifStops(const sfm::PosedImages& posed);
+ExifStops ReadExifStops(const PosedImages& posed);
 
 }  // namespace nerf

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/data/image_convert.h"
-#include "nerf/data/image_io.h"
-#include "nerf/data/mask.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/image/image_convert.h"
+#include "nerf/image/image_io.h"
+#include "nerf/image/mask.h"
 
 namespace nerf {
 namespace {
@@ -41,24 +41,24 @@ struct Sums {
 
 }  // namespace
 
-PhotographFacts LookAtPhotographs(const sfm::PosedImages& posed) {
+PhotographFacts LookAtPhotographs(const PosedImages& posed) {
   PhotographFacts facts;
   facts.photographs = static_cast<int>(posed.images.size());
-  std::vector<const sfm::PosedImage*> with_mask, all;
-  for (const sfm::PosedImage& image : posed.images) {
+  std::vector<const PosedImage*> with_mask, all;
+  for (const PosedImage& image : posed.images) {
     all.push_back(&image);
     if (!image.mask.empty()) with_mask.push_back(&image);
   }
   facts.masks = static_cast<int>(with_mask.size());
-  const std::vector<const sfm::PosedImage*>& from = with_mask.empty() ? all : with_mask;
+  const std::vector<const PosedImage*>& from = with_mask.empty() ? all : with_mask;
   const std::size_t count = std::min(kPhotographs, from.size());
   Sums sums;
   for (std::size_t k = 0; k < count; ++k) {
-    const sfm::PosedImage& image = *from[k * from.size() / count];
+    const PosedImage& image = *from[k * from.size() / count];
     Image photograph;
     try {
       photograph = ReadImage(image.path, image.upright_by_exif);
-    } catch (const sfm::InputError&) {
+    } catch (const InputError&) {
       continue;  // training names it and leaves it out
     }
     ++facts.looked_at;

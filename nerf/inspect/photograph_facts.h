@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 
@@ -16,7 +16,7 @@ struct PhotographFacts {
   bool linear = false;
 };
 
-// Throws sfm::InputError naming a mask that cannot be read or is of another size.
-PhotographFacts LookAtPhotographs(const sfm::PosedImages& posed);
+// Throws InputError naming a mask that cannot be read or is of another size.
+PhotographFacts LookAtPhotographs(const PosedImages& posed);
 
 }  // namespace nerf

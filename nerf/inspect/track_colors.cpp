@@ -6,12 +6,12 @@
 #include <mutex>
 #include <optional>
 
-#include "nerf/data/camera.h"
-#include "nerf/data/image_convert.h"
-#include "nerf/data/image_io.h"
-#include "nerf/data/mask.h"
-#include "nerf/parallel.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
+#include "nerf/image/image_convert.h"
+#include "nerf/image/image_io.h"
+#include "nerf/image/mask.h"
+#include "nerf/scene/camera.h"
 
 namespace nerf {
 namespace {
@@ -59,8 +59,7 @@ std::optional<Light> LightAt(const Image& linear, bool has_end, const Vector2d& 
 // In which parts of a photograph points are known.
 class KnownParts {
  public:
-  explicit KnownParts(const sfm::Camera& camera)
-      : camera_(camera), known_(kCells * kCells, false) {}
+  explicit KnownParts(const Camera& camera) : camera_(camera), known_(kCells * kCells, false) {}
   void Add(const Vector2d& pixel) { known_[CellOf(pixel)] = true; }
   // Whether no point is known about a place.
   bool IsVoid(const Vector2d& pixel) const {
@@ -81,32 +80,32 @@ class KnownParts {
     };
     return of(pixel.y(), camera_.height) * kCells + of(pixel.x(), camera_.width);
   }
-  const sfm::Camera& camera_;
+  const Camera& camera_;
   std::vector<bool> known_;
 };
 
-Vector3d CentreOf(const sfm::PosedImages& posed, int photograph) {
+Vector3d CentreOf(const PosedImages& posed, int photograph) {
   return posed.images[photograph].world_from_camera.translation();
 }
 
 // Where a photograph would see a point.
-std::optional<Vector2d> PlaceIn(const sfm::PosedImages& posed, int photograph, const Vector3d& x) {
-  const sfm::PosedImage& image = posed.images[photograph];
-  const sfm::Camera& camera = posed.cameras[image.camera];
+std::optional<Vector2d> PlaceIn(const PosedImages& posed, int photograph, const Vector3d& x) {
+  const PosedImage& image = posed.images[photograph];
+  const Camera& camera = posed.cameras[image.camera];
   const auto pixel = PixelFromPoint(camera, image.world_from_camera.inverse() * x);
   const bool inside = pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < camera.width &&
                       pixel->y() < camera.height;
   return inside ? pixel : std::nullopt;
 }
 
-bool IsSeenBy(const sfm::SparsePoint& point, int photograph) {
-  return std::ranges::find(point.track, photograph, &sfm::TrackElement::image) != point.track.end();
+bool IsSeenBy(const SparsePoint& point, int photograph) {
+  return std::ranges::find(point.track, photograph, &TrackElement::image) != point.track.end();
 }
 
 // Whether the photograph that looks at a point from most nearly where this one does sees it. What
 // stands before a point and is of the scene stands there for the neighbour too (as does who stays
 // for two photographs: that is not told apart).
-bool NeighbourSees(const sfm::PosedImages& posed, int point, int photograph) {
+bool NeighbourSees(const PosedImages& posed, int point, int photograph) {
   int neighbour = -1;
   double smallest = std::numeric_limits<double>::infinity();
   for (int other = 0; other < static_cast<int>(posed.images.size()); ++other) {
@@ -120,20 +119,20 @@ bool NeighbourSees(const sfm::PosedImages& posed, int point, int photograph) {
 }
 
 // The places in a photograph where points should be seen that are not in its tracks.
-std::vector<std::pair<int, Vector2d>> Expected(const sfm::PosedImages& posed, int photograph,
+std::vector<std::pair<int, Vector2d>> Expected(const PosedImages& posed, int photograph,
                                                double nearby) {
   KnownParts known(posed.cameras[posed.images[photograph].camera]);
   std::vector<std::pair<int, Vector2d>> candidates;
   for (int p = 0; p < static_cast<int>(posed.points.size()); ++p) {
-    const sfm::SparsePoint& point = posed.points[p];
-    const auto in_track = std::ranges::find(point.track, photograph, &sfm::TrackElement::image);
+    const SparsePoint& point = posed.points[p];
+    const auto in_track = std::ranges::find(point.track, photograph, &TrackElement::image);
     if (in_track != point.track.end()) {
       known.Add(in_track->pixel);
       continue;
     }
     const auto pixel = PlaceIn(posed, photograph, point.x_in_world);
     if (!pixel) continue;
-    const auto near = std::ranges::count_if(point.track, [&](const sfm::TrackElement& seen) {
+    const auto near = std::ranges::count_if(point.track, [&](const TrackElement& seen) {
       return AngleAt(posed, p, photograph, seen.image) < nearby;
     });
     if (near >= kFewestNearby) candidates.emplace_back(p, *pixel);
@@ -146,18 +145,18 @@ std::vector<std::pair<int, Vector2d>> Expected(const sfm::PosedImages& posed, in
 
 }  // namespace
 
-double AngleAt(const sfm::PosedImages& posed, int point, int photograph_a, int photograph_b) {
+double AngleAt(const PosedImages& posed, int point, int photograph_a, int photograph_b) {
   const Vector3d& x = posed.points[point].x_in_world;
   const Vector3d a = CentreOf(posed, photograph_a) - x, b = CentreOf(posed, photograph_b) - x;
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-TrackColors ReadTrackColors(const sfm::PosedImages& posed, double nearby,
+TrackColors ReadTrackColors(const PosedImages& posed, double nearby,
                             const std::function<void(int)>& read) {
   const auto photographs = static_cast<int>(posed.images.size());
   std::vector<std::vector<std::pair<int, Vector2d>>> tracks(photographs);
   for (int p = 0; p < static_cast<int>(posed.points.size()); ++p) {
-    for (const sfm::TrackElement& seen : posed.points[p].track) {
+    for (const TrackElement& seen : posed.points[p].track) {
       tracks[seen.image].emplace_back(p, seen.pixel);
     }
   }
@@ -166,7 +165,7 @@ TrackColors ReadTrackColors(const sfm::PosedImages& posed, double nearby,
   int count = 0;
   ParallelForEach(photographs, [&](std::int64_t i) {
     const auto photograph = static_cast<int>(i);
-    const sfm::PosedImage& image = posed.images[photograph];
+    const PosedImage& image = posed.images[photograph];
     Image pixels;
     try {
       pixels = ReadImage(image.path, image.upright_by_exif);
@@ -175,7 +174,7 @@ TrackColors ReadTrackColors(const sfm::PosedImages& posed, double nearby,
         pixels = WithMask(pixels,
                           ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif));
       }
-    } catch (const sfm::InputError&) {
+    } catch (const InputError&) {
       return;  // training names it and leaves it out
     }
     const bool has_end = pixels.encoding == ColorEncoding::kSrgb;

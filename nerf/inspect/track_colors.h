@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "nerf/data/image.h"
-#include "sfm/posed_images.h"
+#include "nerf/image/image.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 
@@ -30,10 +30,10 @@ struct TrackColors {
 // black, white to the end of their scale, transparent or at the border are left out.
 //   nearby  radians at the point, between two photographs from nearby
 //   read    called with the number of photographs read
-TrackColors ReadTrackColors(const sfm::PosedImages& posed, double nearby,
+TrackColors ReadTrackColors(const PosedImages& posed, double nearby,
                             const std::function<void(int)>& read = {});
 
 // The angle at a point between two cameras, radians.
-double AngleAt(const sfm::PosedImages& posed, int point, int photograph_a, int photograph_b);
+double AngleAt(const PosedImages& posed, int point, int photograph_a, int photograph_b);
 
 }  // namespace nerf

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/config.h"
-
 namespace nerf {
 
 double Verdict::Sure() const {
@@ -50,6 +48,10 @@ Verdict Tried(Verdict verdict, double psnr_with, double psnr_without, double wor
   verdict.evidence = fmt::format("{}; tried: {:.2f} dB with it, {:.2f} dB without",
                                  verdict.evidence, psnr_with, psnr_without);
   return verdict;
+}
+
+std::string EffectAssignment(const std::string& effect, const std::string& setting) {
+  return "effects." + effect + "=" + setting;
 }
 
 std::string RowOf(const Verdict& v) {

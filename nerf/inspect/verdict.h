@@ -41,6 +41,12 @@ Verdict Undecided(const std::string& effect, const std::string& evidence);
 // What a trial has decided: on where it was worth so many decibels. Sure: there is no more to ask.
 Verdict Tried(Verdict verdict, double psnr_with, double psnr_without, double worth_it);
 
+// Where rays begin is found as effects are: "near" among their names.
+inline constexpr char kNearKey[] = "march.near_distance";
+
+// Turns an effect on or off, by its key and JSON for its block ("{}", "null"), as --set does.
+std::string EffectAssignment(const std::string& effect, const std::string& setting);
+
 // A verdict as a line, and a table of them.
 std::string RowOf(const Verdict& verdict);
 std::string TableOf(const std::vector<Verdict>& verdicts);

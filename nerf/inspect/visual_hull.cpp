@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "nerf/data/camera.h"
-#include "nerf/data/image_io.h"
-#include "nerf/parallel.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
+#include "nerf/image/image_io.h"
+#include "nerf/scene/camera.h"
 
 namespace nerf {
 namespace {
@@ -45,7 +45,7 @@ std::vector<std::int32_t> OpaqueSums(const Image& photo) {
 // What a photograph says of a cell.
 enum class Sight { kNotSeen, kEmpty, kMaybeMatter };
 
-Sight SightOf(const sfm::Camera& camera, const Eigen::Isometry3d& camera_from_normalized,
+Sight SightOf(const Camera& camera, const Eigen::Isometry3d& camera_from_normalized,
               const std::vector<std::int32_t>& opaque, int cx, int cy, int cz) {
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
   for (int k = 0; k < 8; ++k) {
@@ -70,21 +70,21 @@ Sight SightOf(const sfm::Camera& camera, const Eigen::Isometry3d& camera_from_no
 
 }  // namespace
 
-std::optional<Ball> BallAboutHull(const sfm::PosedImages& posed,
-                                  const sfm::SceneNormalization& normalized_from_world,
+std::optional<Ball> BallAboutHull(const PosedImages& posed,
+                                  const SceneNormalization& normalized_from_world,
                                   const std::function<void(int)>& read) {
   // How many photographs see each cell, none of which sees it empty; or kEmpty.
   constexpr int kEmpty = -1;
   std::vector<int> seen(kCells * kCells * kCells, 0);
   const std::size_t looked_at = std::min(kMostPhotographs, posed.images.size());
   for (std::size_t k = 0; k < looked_at; ++k) {
-    const sfm::PosedImage& image = posed.images[k * posed.images.size() / looked_at];
+    const PosedImage& image = posed.images[k * posed.images.size() / looked_at];
     if (read) read(static_cast<int>(k) + 1);
-    const sfm::Camera& camera = posed.cameras[image.camera];
+    const Camera& camera = posed.cameras[image.camera];
     Image photo;
     try {
       photo = ReadImage(image.path, image.upright_by_exif);
-    } catch (const sfm::InputError&) {
+    } catch (const InputError&) {
       continue;  // training names it and leaves it out
     }
     if (photo.channels != 4 || photo.width != camera.width || photo.height != camera.height)
@@ -129,7 +129,7 @@ std::optional<Ball> BallAboutHull(const sfm::PosedImages& posed,
   return ball;
 }
 
-sfm::SceneNormalization FittedTo(const Ball& ball, sfm::SceneNormalization normalized_from_world) {
+SceneNormalization FittedTo(const Ball& ball, SceneNormalization normalized_from_world) {
   normalized_from_world.scale /= ball.radius;
   normalized_from_world.translation =
       (normalized_from_world.translation - ball.centre) / ball.radius;

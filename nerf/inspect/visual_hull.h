@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "sfm/posed_images.h"
-#include "sfm/scene_normalization.h"
+#include "nerf/scene/posed_images.h"
+#include "nerf/scene/scene_normalization.h"
 
 namespace nerf {
 
@@ -22,11 +22,11 @@ struct Ball {
 //            then there may be matter beyond
 //   read     called with the number of photographs read
 // A photograph that cannot be read is left out.
-std::optional<Ball> BallAboutHull(const sfm::PosedImages& posed,
-                                  const sfm::SceneNormalization& normalized_from_world,
+std::optional<Ball> BallAboutHull(const PosedImages& posed,
+                                  const SceneNormalization& normalized_from_world,
                                   const std::function<void(int)>& read = {});
 
 // The frame in which a ball of the other is the unit ball.
-sfm::SceneNormalization FittedTo(const Ball& ball, sfm::SceneNormalization normalized_from_world);
+SceneNormalization FittedTo(const Ball& ball, SceneNormalization normalized_from_world);
 
 }  // namespace nerf

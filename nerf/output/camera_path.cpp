@@ -6,9 +6,9 @@
 #include <numbers>
 #include <utility>
 
-#include "nerf/data/camera.h"
-#include "sfm/input_error.h"
-#include "sfm/scene_normalization.h"
+#include "nerf/base/input_error.h"
+#include "nerf/scene/camera.h"
+#include "nerf/scene/scene_normalization.h"
 
 namespace nerf {
 namespace {
@@ -19,20 +19,20 @@ using Eigen::Vector3d;
 
 constexpr int kMaxFrames = 100'000;
 
-void Check(const sfm::PosedImages& images, int frames) {
+void Check(const PosedImages& images, int frames) {
   if (frames < 1 || frames > kMaxFrames) {
-    throw sfm::InputError("frames {}: give 1 to {}", frames, kMaxFrames);
+    throw InputError("frames {}: give 1 to {}", frames, kMaxFrames);
   }
   if (images.images.empty()) {
-    throw sfm::InputError("{}: holds no cameras to lead a path along", images.source.string());
+    throw InputError("{}: holds no cameras to lead a path along", images.source.string());
   }
 }
 
-sfm::Camera WithoutDistortion(const sfm::PosedImages& images) {
-  const sfm::Camera& camera = images.cameras[images.images.front().camera];
+Camera WithoutDistortion(const PosedImages& images) {
+  const Camera& camera = images.cameras[images.images.front().camera];
   const double focal = FocalLength(camera);
   const Eigen::Vector2d center = PrincipalPoint(camera);
-  return {.model = sfm::CameraModel::kPinhole,
+  return {.model = CameraModel::kPinhole,
           .width = camera.width,
           .height = camera.height,
           .params = {focal, focal, center.x(), center.y()}};
@@ -43,9 +43,9 @@ sfm::Camera WithoutDistortion(const sfm::PosedImages& images) {
 enum class Ending { kClosed, kOpen };
 
 template <class PoseAt>
-CameraPath Sample(const sfm::PosedImages& images, int frames, Ending ending, PoseAt pose_at) {
+CameraPath Sample(const PosedImages& images, int frames, Ending ending, PoseAt pose_at) {
   CameraPath path;
-  const sfm::Camera camera = WithoutDistortion(images);
+  const Camera camera = WithoutDistortion(images);
   const int steps = std::max(1, ending == Ending::kClosed ? frames : frames - 1);
   for (int i = 0; i < frames; ++i) {
     path.poses.push_back({.world_from_camera = pose_at(static_cast<double>(i) / steps),
@@ -64,12 +64,12 @@ struct Rig {
   bool looks_outwards;
 };
 
-Rig FindRig(const sfm::PosedImages& images, const sfm::SceneNormalization& normalized_from_world) {
+Rig FindRig(const PosedImages& images, const SceneNormalization& normalized_from_world) {
   Rig rig{.focus = normalized_from_world.WorldFromNormalized(Vector3d::Zero()),
           .up = normalized_from_world.rotation.transpose() * Vector3d::UnitZ(),
           .looks_outwards = false};
   double towards_focus = 0;
-  for (const sfm::PosedImage& image : images.images) {
+  for (const PosedImage& image : images.images) {
     const Vector3d forward = image.world_from_camera.linear().col(2);
     rig.mean_center += image.world_from_camera.translation();
     rig.mean_forward += forward;
@@ -95,20 +95,20 @@ double Percentile90(std::vector<double> values) {
 }
 
 // The cameras that a path leads through, by name.
-std::vector<Isometry3d> TrainingPoses(const sfm::PosedImages& images) {
-  std::vector<const sfm::PosedImage*> chosen;
-  for (const sfm::PosedImage& image : images.images) {
-    if (image.split == sfm::Split::kTrain || image.split == sfm::Split::kUnspecified) {
+std::vector<Isometry3d> TrainingPoses(const PosedImages& images) {
+  std::vector<const PosedImage*> chosen;
+  for (const PosedImage& image : images.images) {
+    if (image.split == Split::kTrain || image.split == Split::kUnspecified) {
       chosen.push_back(&image);
     }
   }
   if (chosen.empty()) {
-    throw sfm::InputError("{}: all images are held out, none to lead a path through",
-                          images.source.string());
+    throw InputError("{}: all images are held out, none to lead a path through",
+                     images.source.string());
   }
-  std::ranges::sort(chosen, {}, &sfm::PosedImage::name);
+  std::ranges::sort(chosen, {}, &PosedImage::name);
   std::vector<Isometry3d> poses;
-  for (const sfm::PosedImage* image : chosen) poses.push_back(image->world_from_camera);
+  for (const PosedImage* image : chosen) poses.push_back(image->world_from_camera);
   return poses;
 }
 
@@ -151,13 +151,13 @@ Isometry3d LookAt(const Vector3d& center, const Vector3d& target, const Vector3d
   return FromParts(axes, center);
 }
 
-CameraPath OrbitPath(const sfm::PosedImages& images,
-                     const sfm::SceneNormalization& normalized_from_world, int frames) {
+CameraPath OrbitPath(const PosedImages& images, const SceneNormalization& normalized_from_world,
+                     int frames) {
   Check(images, frames);
   const Rig rig = FindRig(images, normalized_from_world);
   double height = 0;
   double radius = 0;
-  for (const sfm::PosedImage& image : images.images) {
+  for (const PosedImage& image : images.images) {
     const Vector3d offset = image.world_from_camera.translation() - rig.focus;
     height += offset.dot(rig.up);
     radius += (offset - offset.dot(rig.up) * rig.up).norm();
@@ -177,8 +177,8 @@ CameraPath OrbitPath(const sfm::PosedImages& images,
   });
 }
 
-CameraPath SpiralPath(const sfm::PosedImages& images,
-                      const sfm::SceneNormalization& normalized_from_world, int frames) {
+CameraPath SpiralPath(const PosedImages& images, const SceneNormalization& normalized_from_world,
+                      int frames) {
   Check(images, frames);
   const Rig rig = FindRig(images, normalized_from_world);
   const Vector3d forward = rig.mean_forward.norm() > 0
@@ -187,7 +187,7 @@ CameraPath SpiralPath(const sfm::PosedImages& images,
   const Isometry3d world_from_mean = LookAt(rig.mean_center, rig.mean_center + forward, rig.up);
 
   std::vector<double> offsets[3];
-  for (const sfm::PosedImage& image : images.images) {
+  for (const PosedImage& image : images.images) {
     const Vector3d x_in_mean = world_from_mean.inverse() * image.world_from_camera.translation();
     for (int axis = 0; axis < 3; ++axis) offsets[axis].push_back(std::abs(x_in_mean[axis]));
   }
@@ -204,7 +204,7 @@ CameraPath SpiralPath(const sfm::PosedImages& images,
   });
 }
 
-CameraPath TrainingPath(const sfm::PosedImages& images, int frames) {
+CameraPath TrainingPath(const PosedImages& images, int frames) {
   Check(images, frames);
   const std::vector<Isometry3d> poses = TrainingPoses(images);
   std::vector<Vector3d> centers;

@@ -6,18 +6,16 @@
 #include <string>
 #include <string_view>
 
-#include "nerf/data/camera.h"
-#include "sfm/input_error.h"
-#include "sfm/json_fields.h"
-#include "sfm/rigid_pose.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/json_fields.h"
+#include "nerf/scene/camera.h"
+#include "nerf/scene/rigid_pose.h"
 #include "sfm/transforms_json_camera.h"
 
 namespace nerf {
 namespace {
 
 using nlohmann::json;
-using sfm::InputError;
-using sfm::JsonFields;
 
 constexpr int kMaxSide = 1 << 16;  // pixels
 
@@ -50,7 +48,7 @@ Eigen::Isometry3d WorldFromCamera(const JsonFields& fields, std::string_view key
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     matrix(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = numbers[i];
   }
-  return sfm::WorldFromOpenCVCamera(sfm::RigidFromMatrix(matrix, where));
+  return WorldFromOpenCVCamera(RigidFromMatrix(matrix, where));
 }
 
 double VerticalFov(const JsonFields& fields, std::string_view key) {
@@ -115,7 +113,7 @@ bool HasLensKey(const JsonFields& pose) {
 
 CameraPath ReadCameraPath(const std::filesystem::path& json_path, std::optional<int> width,
                           std::optional<int> height) {
-  const json root = sfm::ReadJsonFile(json_path);
+  const json root = ReadJsonFile(json_path);
   const JsonFields file(root, json_path.string() + ": ");
   const auto kind = file.String("camera_type");
   if (kind && *kind != "perspective") {
@@ -139,13 +137,13 @@ CameraPath ReadCameraPath(const std::filesystem::path& json_path, std::optional<
   return path;
 }
 
-PathPose ReadPose(const std::filesystem::path& json_path, const sfm::PosedImages& images) {
-  const json root = sfm::ReadJsonFile(json_path);
+PathPose ReadPose(const std::filesystem::path& json_path, const PosedImages& images) {
+  const json root = ReadJsonFile(json_path);
   const JsonFields pose(root, json_path.string() + ": ");
   if (images.images.empty()) {
     throw InputError("{}: holds no camera", images.source.string());
   }
-  const sfm::Camera& first = images.cameras[images.images.front().camera];
+  const Camera& first = images.cameras[images.images.front().camera];
   PathPose result{.world_from_camera = WorldFromCamera(
                       pose, pose.Has("camera_to_world") ? "camera_to_world" : "transform_matrix"),
                   .camera = first};

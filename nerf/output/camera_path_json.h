@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "nerf/output/camera_path.h"
-#include "sfm/posed_images.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 
@@ -17,14 +17,14 @@ namespace nerf {
 //   fps, seconds                  frames a second, or the whole length; 30 frames a second else
 // The matrices are in the world of the input. `width` and `height` take the place of the size in
 // the file; with one of them the picture keeps its proportions.
-// Throws sfm::InputError naming file and key.
+// Throws InputError naming file and key.
 CameraPath ReadCameraPath(const std::filesystem::path& json, std::optional<int> width = {},
                           std::optional<int> height = {});
 
 // Reads one pose: "transform_matrix" or "camera_to_world" as above, OpenGL axes. The lens is given
 // by "fov" (vertical, degrees) or by the keys of a transforms.json (fl_x, camera_angle_x, k1, ...),
 // at w x h or else the size of the first camera of `images`; without such keys it is that camera.
-// Throws sfm::InputError naming file and key.
-PathPose ReadPose(const std::filesystem::path& json, const sfm::PosedImages& images);
+// Throws InputError naming file and key.
+PathPose ReadPose(const std::filesystem::path& json, const PosedImages& images);
 
 }  // namespace nerf

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "nerf/data/image_convert.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/image/image_convert.h"
 
 namespace nerf {
 namespace {
@@ -16,8 +16,8 @@ constexpr float kMostlyOpaque = 0.5f;
 
 void CheckSameSize(const Image& a, const Image& b) {
   if (a.width == b.width && a.height == b.height) return;
-  throw sfm::InputError("images of {} x {} and {} x {} pixels cannot be compared", a.width,
-                        a.height, b.width, b.height);
+  throw InputError("images of {} x {} and {} x {} pixels cannot be compared", a.width, a.height,
+                   b.width, b.height);
 }
 
 struct Range {

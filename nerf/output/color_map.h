@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "nerf/data/image.h"
+#include "nerf/image/image.h"
 
 namespace nerf {
 
@@ -16,12 +16,12 @@ Eigen::Vector3f Heat(float value);
 // depths of pixels that are mostly opaque; what is not opaque fades to grey.
 //   depth, opacity  [height, width, 1]; opacity in [0,1]; depth in any unit
 //   returns         3 channels, sRGB
-// Throws sfm::InputError where the two differ in size.
+// Throws InputError where the two differ in size.
 Image ColorizeDepth(const Image& depth, const Image& opacity);
 
 // How far two pictures differ: Heat of the mean absolute difference of the sRGB values over white,
 // with white at kWhiteError, the same for all pictures so that they can be compared.
-// Throws sfm::InputError where the two differ in size.
+// Throws InputError where the two differ in size.
 inline constexpr float kWhiteError = 0.25f;
 Image ColorizeError(const Image& a, const Image& b);
 

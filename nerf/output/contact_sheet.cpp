@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "nerf/data/image_convert.h"
+#include "nerf/image/image_convert.h"
 #include "nerf/output/color_map.h"
 #include "nerf/output/lettering.h"
 

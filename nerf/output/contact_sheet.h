@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "nerf/data/image.h"
+#include "nerf/image/image.h"
 
 namespace nerf {
 
@@ -19,7 +19,7 @@ struct ContactSheetRow {
 // their row where a common font is installed (DejaVu Sans, Liberation Sans, Arial), else they are
 // left out.
 //   returns  3 channels, sRGB; without rows an empty image
-// Throws sfm::InputError where the pictures of a row differ in size.
+// Throws InputError where the pictures of a row differ in size.
 Image ContactSheet(std::span<const ContactSheetRow> rows);
 
 }  // namespace nerf

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "nerf/data/image.h"
+#include "nerf/image/image.h"
 
 namespace nerf {
 

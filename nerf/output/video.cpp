@@ -4,8 +4,8 @@
 #include <boost/process.hpp>
 #include <vector>
 
-#include "nerf/data/temporary_file.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/temporary_file.h"
 
 namespace nerf {
 namespace {
@@ -60,21 +60,21 @@ std::string FrameName(int index) { return fmt::format("{:05d}.png", index); }
 void WriteVideo(const fs::path& frames_folder, int frames, double frames_per_second,
                 const fs::path& video) {
   if (video.extension() != ".mp4") {
-    throw sfm::InputError("{}: films are written as .mp4, give that ending", video.string());
+    throw InputError("{}: films are written as .mp4, give that ending", video.string());
   }
   if (!(frames_per_second > 0 && frames_per_second <= 1000)) {
-    throw sfm::InputError("{}: {} frames a second, give more than 0 and at most 1000",
-                          video.string(), frames_per_second);
+    throw InputError("{}: {} frames a second, give more than 0 and at most 1000", video.string(),
+                     frames_per_second);
   }
   for (int i = 0; i < std::max(1, frames); ++i) {
     if (fs::exists(frames_folder / FrameName(i))) continue;
-    throw sfm::InputError("{}: no such frame to make a film of",
-                          (frames_folder / FrameName(i)).string());
+    throw InputError("{}: no such frame to make a film of",
+                     (frames_folder / FrameName(i)).string());
   }
   const boost::filesystem::path ffmpeg = bp::search_path("ffmpeg");
   if (ffmpeg.empty()) {
-    throw sfm::InputError("{}: films need the program ffmpeg, install it (apt install ffmpeg)",
-                          video.string());
+    throw InputError("{}: films need the program ffmpeg, install it (apt install ffmpeg)",
+                     video.string());
   }
   TemporaryFile file(video);
   bp::ipstream complaints;
@@ -87,8 +87,8 @@ void WriteVideo(const fs::path& frames_folder, int frames, double frames_per_sec
   }
   child.wait();
   if (child.exit_code() != 0) {
-    throw sfm::InputError("{}: ffmpeg failed: {}", video.string(),
-                          last_line.empty() ? "it said nothing" : last_line);
+    throw InputError("{}: ffmpeg failed: {}", video.string(),
+                     last_line.empty() ? "it said nothing" : last_line);
   }
   file.Keep();
 }

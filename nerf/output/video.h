@@ -13,7 +13,7 @@ std::string FrameName(int index);
 
 // Makes an MP4 (H.264, 4:2:0, playable while it loads) of the first `frames` frames, FrameName(0),
 // FrameName(1), ... in a folder, by way of the ffmpeg program. Odd sizes are padded by a pixel. The
-// file appears whole or not at all. Throws sfm::InputError where ffmpeg is not installed, the
+// file appears whole or not at all. Throws InputError where ffmpeg is not installed, the
 // ending is not .mp4, a frame is missing, or ffmpeg fails (with its last line).
 void WriteVideo(const std::filesystem::path& frames_folder, int frames, double frames_per_second,
                 const std::filesystem::path& video);

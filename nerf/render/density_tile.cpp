@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nerf/base/parallel.h"
+#include "nerf/base/stopwatch.h"
 #include "nerf/effects/footprint.h"
 #include "nerf/field/activations.h"
 #include "nerf/field/density.h"
@@ -10,8 +12,6 @@
 #include "nerf/kernels/activations.h"
 #include "nerf/kernels/hash_encoding_tile.h"
 #include "nerf/kernels/matrix_product.h"
-#include "nerf/parallel.h"
-#include "nerf/stopwatch.h"
 
 namespace nerf {
 

@@ -8,7 +8,7 @@
 #include "nerf/field/hash_encoding.h"
 #include "nerf/field/mlp.h"
 #include "nerf/kernels/mlp.h"
-#include "nerf/stage_seconds.h"
+#include "nerf/render/stage_seconds.h"
 
 namespace nerf {
 

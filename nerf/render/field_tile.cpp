@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "nerf/base/stopwatch.h"
 #include "nerf/effects/view.h"
 #include "nerf/field/activations.h"
 #include "nerf/field/direction_encoding.h"
 #include "nerf/kernels/activations.h"
 #include "nerf/kernels/matrix_product.h"
-#include "nerf/left_out.h"
-#include "nerf/stopwatch.h"
 
 namespace nerf {
 
@@ -34,7 +33,7 @@ void TileField::Radiance(std::int64_t samples, std::span<const std::int64_t> ray
   const int in_row = PaddedWidth(color_.Width(0));
   std::array<float, kDirectionFeatures> view{};
   // None where colour is diffuse.
-  const int view_features = kLeftOut<ViewOptions> ? 0 : color_.Width(0) - geometry_features_;
+  const int view_features = color_.Width(0) - geometry_features_;
   for (std::int64_t i = 0; i < samples; ++i) {
     if (view_features > 0 && (i == 0 || ray[i] != ray[i - 1])) {
       kernels::EncodeDirection(directions.subspan(3 * ray[i]).first<3>(), view);

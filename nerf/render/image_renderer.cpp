@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "nerf/data/camera.h"
-#include "nerf/data/pixel_sampler.h"
+#include "nerf/scene/camera.h"
+#include "nerf/scene/pixel_sampler.h"
 
 namespace nerf {
 namespace {
@@ -14,7 +14,7 @@ constexpr int kTile = 256;  // blocks that are rendered at once
 
 // The pixels of block number `block`, row after row of blocks, in an order in which every four in
 // succession are a square, too. Pixels beyond the edge are those at the edge once more.
-void AppendBlock(const sfm::Camera& camera, std::int64_t block, std::vector<std::int64_t>& pixels) {
+void AppendBlock(const Camera& camera, std::int64_t block, std::vector<std::int64_t>& pixels) {
   const int across = (camera.width + kBlock - 1) / kBlock;
   const auto left = static_cast<int>(block % across) * kBlock;
   const auto top = static_cast<int>(block / across) * kBlock;
@@ -50,7 +50,7 @@ void LendRays(ViewRays& tile) {
 
 }  // namespace
 
-RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
+RenderedView RenderView(RayRenderer& renderer, const Camera& camera,
                         const Eigen::Isometry3d& normalized_from_camera,
                         const Eigen::Vector3f& background, ColorEncoding encoding,
                         const std::function<void(std::int64_t)>& progress) {
@@ -89,11 +89,11 @@ RenderedView RenderView(RayRenderer& renderer, const sfm::Camera& camera,
   return view;
 }
 
-Image RenderPreview(RayRenderer& renderer, const sfm::Camera& camera, int factor,
+Image RenderPreview(RayRenderer& renderer, const Camera& camera, int factor,
                     const Eigen::Isometry3d& normalized_from_camera,
                     const Eigen::Vector3f& background, ColorEncoding encoding) {
   factor = std::clamp(factor, 1, std::min(camera.width, camera.height));
-  const sfm::Camera coarse = Downscaled(camera, factor);
+  const Camera coarse = Downscaled(camera, factor);
   const RenderedView view =
       RenderView(renderer, coarse, normalized_from_camera, background, encoding);
   Image image(camera.width, camera.height, 3, encoding);

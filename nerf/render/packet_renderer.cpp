@@ -5,9 +5,9 @@
 #include <cmath>
 #include <mutex>
 
+#include "nerf/base/parallel.h"
+#include "nerf/base/stopwatch.h"
 #include "nerf/effects/footprint.h"
-#include "nerf/parallel.h"
-#include "nerf/stopwatch.h"
 
 namespace nerf {
 namespace {

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "nerf/base/parallel.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/histogram_loss.h"
-#include "nerf/parallel.h"
 #include "nerf/render/volume_rendering.h"
 #include "nerf/sampling/contraction.h"
 

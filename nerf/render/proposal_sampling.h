@@ -2,10 +2,11 @@
 
 #include <vector>
 
+#include "nerf/field/libtorch.h"
 #include "nerf/field/proposal_field.h"
-#include "nerf/libtorch.h"
+#include "nerf/geometry/rays.h"
+#include "nerf/sampling/packed_samples.h"
 #include "nerf/sampling/ray_intervals.h"
-#include "nerf/sampling/rays.h"
 
 namespace nerf {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "nerf/field/proposal_field.h"
+#include "nerf/geometry/rays.h"
 #include "nerf/render/density_tile.h"
 #include "nerf/sampling/ray_marcher.h"
-#include "nerf/sampling/rays.h"
 
 namespace nerf {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "nerf/libtorch.h"
-#include "nerf/sampling/rays.h"
+#include "nerf/field/libtorch.h"
+#include "nerf/geometry/rays.h"
 
 namespace nerf {
 

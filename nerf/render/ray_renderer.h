@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "nerf/sampling/rays.h"
-#include "nerf/stage_seconds.h"
+#include "nerf/geometry/rays.h"
+#include "nerf/render/stage_seconds.h"
 
 namespace nerf {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 
 namespace nerf {
 namespace {
@@ -21,7 +21,7 @@ constexpr int kPacket = 16;
 RenderQuality RenderQuality::Of(double dial, const MarchOptions& march,
                                 const ProposalOptions& proposal) {
   if (!(dial >= 0 && dial <= 1)) {
-    throw sfm::InputError("--quality {}: use 0 (fast) to 1 (exact)", dial);
+    throw InputError("--quality {}: use 0 (fast) to 1 (exact)", dial);
   }
   const double exact = march.stop_transmittance;
   if (dial == 1) return {1, proposal.samples, 0, exact};

@@ -15,7 +15,7 @@ struct RenderQuality {
   double stop_transmittance = 1e-4;  // a ray ends where less light than this gets through
 
   // The dial: 1 is exact, 0 the fastest whose pictures still look right.
-  // Throws sfm::InputError where it is not in [0, 1].
+  // Throws InputError where it is not in [0, 1].
   static RenderQuality Of(double dial, const MarchOptions& march, const ProposalOptions& proposal);
 };
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "nerf/base/parallel.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
-#include "nerf/parallel.h"
 
 namespace nerf {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/parallel.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
+#include "nerf/base/random.h"
 #include "nerf/sampling/contraction.h"
-#include "nerf/sampling/random.h"
-#include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
@@ -24,21 +24,19 @@ constexpr std::uint8_t kFarthestBlock = 255;
 
 void OccupancyOptions::Check() const {
   if (resolution < 2 || resolution > 512) {
-    throw sfm::InputError("config: occupancy.resolution is {}; use 2 to 512", resolution);
+    throw InputError("config: occupancy.resolution is {}; use 2 to 512", resolution);
   }
   if (!(decay > 0 && decay < 1)) {
-    throw sfm::InputError("config: occupancy.decay is {}; use a value between 0 and 1", decay);
+    throw InputError("config: occupancy.decay is {}; use a value between 0 and 1", decay);
   }
   if (!(threshold > 0 && threshold < 1)) {
-    throw sfm::InputError("config: occupancy.threshold is {}; use a value between 0 and 1",
-                          threshold);
+    throw InputError("config: occupancy.threshold is {}; use a value between 0 and 1", threshold);
   }
-  if (warmup_steps < 0)
-    throw sfm::InputError("config: occupancy.warmup_steps must not be negative");
+  if (warmup_steps < 0) throw InputError("config: occupancy.warmup_steps must not be negative");
   if (coarse_to_fine_steps < 0) {
-    throw sfm::InputError("config: occupancy.coarse_to_fine_steps must not be negative");
+    throw InputError("config: occupancy.coarse_to_fine_steps must not be negative");
   }
-  if (update_every < 1) throw sfm::InputError("config: occupancy.update_every must be at least 1");
+  if (update_every < 1) throw InputError("config: occupancy.update_every must be at least 1");
 }
 
 OccupancyGrid::OccupancyGrid(const OccupancyOptions& options, float step_length)

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "nerf/geometry/rays.h"
 #include "nerf/sampling/ray_marcher.h"
-#include "nerf/sampling/rays.h"
 
 namespace nerf {
 

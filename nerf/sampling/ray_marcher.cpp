@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/parallel.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
 #include "nerf/sampling/contraction.h"
-#include "sfm/input_error.h"
 
 namespace nerf {
 
@@ -110,21 +110,21 @@ void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
 
 void MarchOptions::Check() const {
   if (sampler != "auto" && sampler != "occupancy" && sampler != "proposal") {
-    throw sfm::InputError(
-        "config: march.sampler is \"{}\"; use \"auto\", \"occupancy\" or \"proposal\"", sampler);
+    throw InputError("config: march.sampler is \"{}\"; use \"auto\", \"occupancy\" or \"proposal\"",
+                     sampler);
   }
   if (!(near_distance >= 0 && near_distance < far_distance && far_distance <= 1e8)) {
-    throw sfm::InputError(
+    throw InputError(
         "config: march.near_distance {} and march.far_distance {} must satisfy "
         "0 <= near < far <= 1e8",
         near_distance, far_distance);
   }
   if (steps_per_unit < 1 || steps_per_unit > 4096) {
-    throw sfm::InputError("config: march.steps_per_unit is {}; use 1 to 4096", steps_per_unit);
+    throw InputError("config: march.steps_per_unit is {}; use 1 to 4096", steps_per_unit);
   }
   if (!(stop_transmittance > 0 && stop_transmittance < 1)) {
-    throw sfm::InputError("config: march.stop_transmittance is {}; use a value between 0 and 1",
-                          stop_transmittance);
+    throw InputError("config: march.stop_transmittance is {}; use a value between 0 and 1",
+                     stop_transmittance);
   }
 }
 

@@ -4,13 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "nerf/left_out.h"
+#include "nerf/geometry/rays.h"
 #include "nerf/sampling/occupancy_grid.h"
-#include "nerf/sampling/rays.h"
+#include "nerf/sampling/packed_samples.h"
 
 namespace nerf {
-
-struct UnboundedOptions;  // nerf/effects/unbounded.h, of which nothing but the name is known here
 
 struct MarchOptions {
   // What places samples: the "occupancy" grid, a "proposal" field, or by "auto" the grid for
@@ -25,7 +23,7 @@ struct MarchOptions {
   bool unbounded = true;
 
   void Check() const;
-  bool IsUnbounded() const { return !kLeftOut<UnboundedOptions> && unbounded; }
+  bool IsUnbounded() const { return unbounded; }
   float StepLength() const { return 1.0f / static_cast<float>(steps_per_unit); }
 };
 

@@ -3,19 +3,19 @@
 #include <cmath>
 #include <limits>
 
-#include "nerf/data/camera.h"
-#include "nerf/data/srgb.h"
+#include "nerf/image/srgb.h"
+#include "nerf/reference/lens.h"
+#include "nerf/reference/srgb.h"
+#include "nerf/scene/camera.h"
 #include "nerf/selfcheck/numeric_case.h"
-#include "tests/reference/lens.h"
-#include "tests/reference/srgb.h"
 
 namespace nerf {
 namespace {
 
-using M = sfm::CameraModel;
+using M = CameraModel;
 
 // Each of COLMAP's models as strong as real lenses are.
-std::vector<sfm::Camera> Lenses() {
+std::vector<Camera> Lenses() {
   return {
       {M::kSimplePinhole, 200, 140, {150, 98, 71}},
       {M::kPinhole, 200, 140, {150, 160, 98, 71}},
@@ -36,7 +36,7 @@ std::vector<sfm::Camera> Lenses() {
 
 double LensesFollowColmapsFormulae() {
   WorstError worst;
-  for (const sfm::Camera& camera : Lenses()) {
+  for (const Camera& camera : Lenses()) {
     int compared = 0;
     for (double u = -0.9; u <= 0.9; u += 0.15) {
       for (double v = -0.6; v <= 0.6; v += 0.15) {
@@ -54,7 +54,7 @@ double LensesFollowColmapsFormulae() {
 
 double LensesCanBeUndone() {
   WorstError worst;
-  for (const sfm::Camera& camera : Lenses()) {
+  for (const Camera& camera : Lenses()) {
     const double focal = FocalLength(camera);
     int undone = 0;
     for (double y = 0; y <= camera.height; y += 5) {
@@ -75,7 +75,7 @@ double LensesCanBeUndone() {
 
 double LensesAreSmoothAtTheirAxis() {
   WorstError worst;
-  for (const sfm::Camera& camera : Lenses()) {
+  for (const Camera& camera : Lenses()) {
     const Eigen::Vector2d centre = PrincipalPoint(camera);
     for (const double off : {0.0, 1e-300, 1e-12, 1e-6}) {
       const auto direction = DirectionFromPixel(camera, centre + Eigen::Vector2d(off, 0));
@@ -93,7 +93,7 @@ double LensesAreSmoothAtTheirAxis() {
 
 double NothingIsMirroredFromBehind() {
   WorstError worst;
-  for (const sfm::Camera& camera : Lenses()) {
+  for (const Camera& camera : Lenses()) {
     for (const double z : {0.0, -0.0, -1e-300, -1.0, -1e30}) {
       const auto pixel = PixelFromPoint(camera, {0.3, -0.2, z});
       if (!pixel) continue;
@@ -108,7 +108,7 @@ double NothingIsMirroredFromBehind() {
 // What normalising a vector of that length would lose.
 double PixelsDoNotDependOnHowFarAPointIs() {
   WorstError worst;
-  for (const sfm::Camera& camera : Lenses()) {
+  for (const Camera& camera : Lenses()) {
     const auto truth = *PixelFromPoint(camera, {0.3, -0.2, 1});
     for (const double size : {1e-150, 1e-40, 1e-3, 1e30, 1e150}) {
       const auto pixel = PixelFromPoint(camera, {0.3 * size, -0.2 * size, size});

@@ -9,9 +9,9 @@
 #include "nerf/kernels/activations.h"
 #include "nerf/kernels/direction_encoding.h"
 #include "nerf/kernels/hash_encoding_tile.h"
+#include "nerf/reference/hash_encoding.h"
 #include "nerf/selfcheck/numeric_case.h"
 #include "nerf/selfcheck/one_ray.h"
-#include "tests/reference/hash_encoding.h"
 
 namespace nerf {
 namespace {

@@ -6,9 +6,9 @@
 #include "nerf/field/density.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
+#include "nerf/render/fused_engine.h"
+#include "nerf/render/libtorch_engine.h"
 #include "nerf/sampling/occupancy_grid.h"
-#include "nerf/train/fused_engine.h"
-#include "nerf/train/libtorch_engine.h"
 
 namespace nerf {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "nerf/train/engine.h"
+#include "nerf/render/engine.h"
 
 namespace nerf {
 

@@ -8,8 +8,8 @@
 #include "nerf/kernels/adam.h"
 #include "nerf/kernels/bfloat16_product.h"
 #include "nerf/kernels/mlp.h"
+#include "nerf/reference/mlp.h"
 #include "nerf/selfcheck/numeric_case.h"
-#include "tests/reference/mlp.h"
 
 namespace nerf {
 namespace {

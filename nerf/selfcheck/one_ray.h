@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "nerf/kernels/volume_rendering.h"
-#include "tests/reference/volume_rendering.h"
+#include "nerf/reference/volume_rendering.h"
 
 namespace nerf {
 

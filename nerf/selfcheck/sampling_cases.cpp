@@ -4,12 +4,12 @@
 #include <random>
 
 #include "nerf/kernels/histogram_loss.h"
+#include "nerf/reference/contraction.h"
+#include "nerf/reference/ray_histogram.h"
 #include "nerf/sampling/contraction.h"
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/sampling/ray_intervals.h"
 #include "nerf/selfcheck/numeric_case.h"
-#include "tests/reference/contraction.h"
-#include "tests/reference/ray_histogram.h"
 
 namespace nerf {
 namespace {

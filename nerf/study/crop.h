@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nerf/data/image.h"
+#include "nerf/image/image.h"
 
 namespace nerf {
 

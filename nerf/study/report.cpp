@@ -3,7 +3,7 @@
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
 
 namespace nerf {
 namespace {
@@ -44,7 +44,7 @@ std::string StudyReport(const nlohmann::json& results, const fs::path& crops) {
   const auto add = [&](const std::string& name) {
     const fs::path file = crops / (name + ".png");
     if (!fs::exists(file)) return;
-    pictures[name] = "data:image/png;base64," + Base64(sfm::ReadWholeFile(file));
+    pictures[name] = "data:image/png;base64," + Base64(ReadWholeFile(file));
   };
   add("truth");
   for (const auto& setting : results.at("settings")) add(setting.at("name"));

@@ -3,24 +3,24 @@
 #include <algorithm>
 #include <fstream>
 
-#include "nerf/config.h"
-#include "nerf/data/camera.h"
-#include "nerf/data/dataset.h"
-#include "nerf/data/image_convert.h"
-#include "nerf/data/image_io.h"
-#include "nerf/data/image_metrics.h"
-#include "nerf/parallel.h"
-#include "nerf/processor_name.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
+#include "nerf/base/processor_name.h"
+#include "nerf/base/stopwatch.h"
+#include "nerf/config/config.h"
+#include "nerf/image/image_convert.h"
+#include "nerf/image/image_io.h"
+#include "nerf/image/image_metrics.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/model/view_renderer.h"
 #include "nerf/render/image_renderer.h"
-#include "nerf/stopwatch.h"
+#include "nerf/scene/camera.h"
+#include "nerf/scene/dataset.h"
+#include "nerf/scene/scene_normalization.h"
 #include "nerf/study/crop.h"
 #include "nerf/study/pareto.h"
-#include "nerf/train/run_folder.h"
 #include "nerf/train/trainer.h"
-#include "nerf/train/view_renderer.h"
-#include "sfm/atomic_file.h"
-#include "sfm/input_error.h"
-#include "sfm/scene_normalization.h"
 #include "sfm/transforms_json.h"
 
 namespace nerf {
@@ -58,20 +58,20 @@ json CostsOf(const fs::path& metrics) {
 
 }  // namespace
 
-Study::Study(sfm::PosedImages posed, const StudyOptions& options, fs::path folder)
+Study::Study(PosedImages posed, const StudyOptions& options, fs::path folder)
     : posed_(std::move(posed)),
       options_(options),
       folder_(std::move(folder)),
       settings_(StudySettings(options.downscale)),
-      normalized_from_world_(sfm::NormalizeScene(posed_)) {
+      normalized_from_world_(NormalizeScene(posed_)) {
   AssignSplits(posed_, LoadConfig("balanced", {}).data);
-  std::vector<const sfm::PosedImage*> all;
+  std::vector<const PosedImage*> all;
   for (const auto& image : posed_.images) {
-    if (image.split == sfm::Split::kTest) all.push_back(&image);
+    if (image.split == Split::kTest) all.push_back(&image);
   }
   if (all.empty()) {
-    throw sfm::InputError("{}: a study is measured on held-out photographs; take 8 at least",
-                          posed_.source.string());
+    throw InputError("{}: a study is measured on held-out photographs; take 8 at least",
+                     posed_.source.string());
   }
   const auto count = std::min(all.size(), options_.held_out);
   for (std::size_t i = 0; i < count; ++i) held_out_.push_back(all[i * all.size() / count]);
@@ -88,11 +88,11 @@ Study::Study(sfm::PosedImages posed, const StudyOptions& options, fs::path folde
               {"settings", json::array()}};
   if (!fs::exists(JsonPath(folder_))) return;
   const json before =
-      json::parse(sfm::ReadWholeFile(JsonPath(folder_)), nullptr, /*allow_exceptions=*/false);
+      json::parse(ReadWholeFile(JsonPath(folder_)), nullptr, /*allow_exceptions=*/false);
   for (const char* key : {"input", "downscale", "budget_seconds", "held_out"}) {
     if (!before.is_object() || !before.contains(key) || before[key] != results_[key]) {
-      throw sfm::InputError("{}: is of another study ({} differs); choose another folder with -o",
-                            JsonPath(folder_).string(), key);
+      throw InputError("{}: is of another study ({} differs); choose another folder with -o",
+                       JsonPath(folder_).string(), key);
     }
   }
   results_ = before;
@@ -117,9 +117,9 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
   const Config config = LoadConfig(setting.preset, assignments);
 
   const fs::path run = folder_ / "runs" / setting.name;
-  sfm::RemoveAll(run);
-  sfm::MakeOutputFolder(run);
-  sfm::WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
+  RemoveAll(run);
+  MakeOutputFolder(run);
+  WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
   sfm::WriteTransformsJson(posed_, PosesPath(run));
   const Photographs& photographs = Read(config);
   const SceneFacts scene = FactsOf(photographs.data, normalized_from_world_);
@@ -140,7 +140,7 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
     if (quality < 1 && result["dial"][0]["seconds_per_frame"] > kSlowestFrame) break;
     const auto renderer = ViewRenderer(trainer.GetModel(), quality);
     double psnr = 0, ssim = 0, frame = 0;
-    for (const sfm::PosedImage* image : held_out_) {
+    for (const PosedImage* image : held_out_) {
       const Image truth = OnWhite(
           LoadPhotograph(posed_, *image, {options_.downscale, MeaningOf(config.effects.masks)})
               .pixels);
@@ -155,7 +155,7 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
       ssim += part * Ssim(truth, view.rgb);
       if (quality == 1 && image == held_out_.front()) {
         const Patch patch = BusiestPatch(truth);
-        sfm::MakeOutputFolder(folder_ / "crops");
+        MakeOutputFolder(folder_ / "crops");
         WriteImage(folder_ / "crops" / (setting.name + ".png"), Crop(view.rgb, patch));
         WriteImage(folder_ / "crops" / "truth.png", Crop(truth, patch));
       }
@@ -187,8 +187,8 @@ void Study::MarkFronts() {
 
 void Study::Save() const {
   // Names of files need not be UTF-8.
-  sfm::WriteFileAtomically(JsonPath(folder_),
-                           results_.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  WriteFileAtomically(JsonPath(folder_),
+                      results_.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 bool Study::Run(const std::atomic<bool>& stop,

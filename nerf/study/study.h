@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "nerf/config.h"
-#include "nerf/data/dataset.h"
+#include "nerf/config/config.h"
+#include "nerf/scene/dataset.h"
+#include "nerf/scene/posed_images.h"
+#include "nerf/scene/scene_normalization.h"
 #include "nerf/study/study_plan.h"
-#include "sfm/posed_images.h"
-#include "sfm/scene_normalization.h"
 
 namespace nerf {
 
@@ -28,8 +28,8 @@ class Study {
  public:
   //   posed    with poses; splits are assigned here
   //   folder   study.json, runs/SETTING and crops/SETTING.png go there
-  // Throws sfm::InputError where the capture holds no photograph out, or the folder another study.
-  Study(sfm::PosedImages posed, const StudyOptions& options, std::filesystem::path folder);
+  // Throws InputError where the capture holds no photograph out, or the folder another study.
+  Study(PosedImages posed, const StudyOptions& options, std::filesystem::path folder);
 
   // Until the last setting is done or `stop` is set. Returns whether all are done.
   //   begins  called before each setting with its number, its name and its seconds of training
@@ -51,12 +51,12 @@ class Study {
   void MarkFronts();
   void Save() const;
 
-  sfm::PosedImages posed_;
+  PosedImages posed_;
   StudyOptions options_;
   std::filesystem::path folder_;
   std::vector<StudySetting> settings_;
-  sfm::SceneNormalization normalized_from_world_;
-  std::vector<const sfm::PosedImage*> held_out_;
+  SceneNormalization normalized_from_world_;
+  std::vector<const PosedImage*> held_out_;
   std::map<int, Photographs> photographs_;  // by downscale
   nlohmann::json results_;
 };

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
 
 namespace nerf {
 
@@ -21,7 +21,7 @@ MetricsFile::MetricsFile(const std::filesystem::path& path, std::int64_t last_st
       AddToCurve(json);
     }
   }
-  sfm::WriteFileAtomically(path, kept);
+  WriteFileAtomically(path, kept);
   file_.open(path, std::ios::app);
 }
 

@@ -3,10 +3,10 @@
 #include <atomic>
 #include <memory>
 
+#include "nerf/base/parallel.h"
 #include "nerf/field/tensor_span.h"
-#include "nerf/parallel.h"
-#include "nerf/train/checkpoint.h"
-#include "nerf/train/non_finite_error.h"
+#include "nerf/model/checkpoint.h"
+#include "nerf/render/non_finite_error.h"
 
 namespace nerf {
 namespace {

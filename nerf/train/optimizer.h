@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "nerf/config/train_options.h"
+#include "nerf/field/libtorch.h"
 #include "nerf/kernels/adam.h"
-#include "nerf/libtorch.h"
-#include "nerf/train/train_options.h"
 
 namespace nerf {
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "nerf/stopwatch.h"
-#include "nerf/train/train_options.h"
+#include "nerf/base/stopwatch.h"
+#include "nerf/config/train_options.h"
 
 namespace nerf {
 

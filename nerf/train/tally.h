@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nerf/train/engine.h"
+#include "nerf/render/engine.h"
 
 namespace nerf {
 

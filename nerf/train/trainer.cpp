@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "nerf/stopwatch.h"
+#include "nerf/base/stopwatch.h"
+#include "nerf/model/run_folder.h"
 #include "nerf/train/metrics_file.h"
-#include "nerf/train/run_folder.h"
 #include "nerf/train/trainer_state.h"
 #include "nerf/train/training_display.h"
 #include "nerf/train/visible_cells.h"

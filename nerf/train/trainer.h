@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "nerf/data/dataset.h"
-#include "nerf/train/model.h"
+#include "nerf/model/model.h"
+#include "nerf/scene/dataset.h"
 #include "nerf/train/quality_curve.h"
 
 namespace nerf {

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/effects/background.h"
-#include "nerf/effects/exposure.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
+#include "nerf/field/background.h"
+#include "nerf/field/exposure.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/field/tensor_span.h"
-#include "nerf/parallel.h"
+#include "nerf/model/parameters.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/render/non_finite_error.h"
 #include "nerf/sampling/occupancy_grid.h"
-#include "nerf/train/non_finite_error.h"
-#include "nerf/train/parameters.h"
-#include "nerf/train/run_folder.h"
-#include "sfm/input_error.h"
 
 namespace nerf {
 namespace {
@@ -43,7 +43,7 @@ Trainer::State::State(Model model_in, const Dataset& data_in, std::filesystem::p
 void Trainer::State::CheckPhotographs() const {
   const std::vector<std::string>& names = model.scene.photographs;
   if (std::ranges::equal(names, data.train, {}, {}, &View::name)) return;
-  throw sfm::InputError(
+  throw InputError(
       "{}: was trained on {} photographs, and now there are {}, or others; put back what it was "
       "trained on, or train again",
       run.string(), names.size(), data.train.size());
@@ -167,11 +167,11 @@ void Trainer::State::Load(const Checkpoint& checkpoint) {
     training_seconds = checkpoint.meta.at("training_seconds");
     validation_psnr = checkpoint.meta.at("validation_psnr");
     if (step < 0 || rays_per_batch < 1 || rays_per_batch > Options().max_rays_per_batch) {
-      throw sfm::InputError("{}: step or rays_per_batch are out of range; train again",
-                            CheckpointPath(run).string());
+      throw InputError("{}: step or rays_per_batch are out of range; train again",
+                       CheckpointPath(run).string());
     }
   } catch (const nlohmann::json::exception& error) {
-    throw sfm::InputError("{}: {}; train again", CheckpointPath(run).string(), error.what());
+    throw InputError("{}: {}; train again", CheckpointPath(run).string(), error.what());
   }
 }
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "nerf/data/pixel_sampler.h"
-#include "nerf/train/checkpoint.h"
-#include "nerf/train/engine.h"
+#include "nerf/model/checkpoint.h"
+#include "nerf/render/engine.h"
+#include "nerf/scene/pixel_sampler.h"
 #include "nerf/train/optimizer.h"
 #include "nerf/train/pace.h"
 #include "nerf/train/tally.h"
@@ -23,7 +23,7 @@ struct Trainer::State {
   const TrainOptions& Options() const { return model.config.train; }
 
   // What is known of each photograph belongs to those that training began with, in their order.
-  // Throws sfm::InputError where they are others.
+  // Throws InputError where they are others.
   void CheckPhotographs() const;
   void StartBackground();
   // A step with its book-keeping.
@@ -36,7 +36,7 @@ struct Trainer::State {
   bool Over() const { return step > 0 && (ReachedTarget() || pace.Progress(step) >= 1); }
   nlohmann::json Metrics() const;
   void Save() const;
-  // What Save wrote. Throws sfm::InputError naming what is missing or out of range.
+  // What Save wrote. Throws InputError naming what is missing or out of range.
   void Load(const Checkpoint& checkpoint);
 
   Model model;

@@ -9,10 +9,10 @@ std::string PriceOfQuality(const QualityCurve& curve) {
   std::string text;
   if (const auto psnr = curve.Last()) text += fmt::format("{:.2f} dB", *psnr);
   if (const auto last = curve.SecondsOfLast(kGain)) {
-    text += fmt::format(", last +{} dB cost {}", kGain, sfm::FormatSeconds(*last));
+    text += fmt::format(", last +{} dB cost {}", kGain, FormatSeconds(*last));
   }
   if (const auto next = curve.SecondsForNext(kGain)) {
-    text += fmt::format(", next about {}", sfm::FormatSeconds(*next));
+    text += fmt::format(", next about {}", FormatSeconds(*next));
   }
   return text;
 }
@@ -23,7 +23,7 @@ void TrainingDisplay::Update(std::int64_t done, double loss, double rays_per_sec
   const double keep = rays_per_second_ == 0 ? 0.0 : kSmoothing;
   loss_ = keep * loss_ + (1 - keep) * loss;
   rays_per_second_ = keep * rays_per_second_ + (1 - keep) * rays_per_second;
-  if (!sfm::ProgressLine::IsTerminal()) return;
+  if (!ProgressLine::IsTerminal()) return;
   progress_.Update(done, fmt::format("loss {:.5f}  {:.1f}k rays/s  {}", loss_,
                                      rays_per_second_ / 1e3, PriceOfQuality(curve)));
 }

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "nerf/base/progress.h"
 #include "nerf/train/quality_curve.h"
-#include "sfm/progress.h"
 
 namespace nerf {
 
@@ -20,7 +20,7 @@ class TrainingDisplay {
   void Update(std::int64_t done, double loss, double rays_per_second, const QualityCurve& curve);
 
  private:
-  sfm::ProgressLine progress_;
+  ProgressLine progress_;
   double loss_ = 0, rays_per_second_ = 0;  // running means
 };
 

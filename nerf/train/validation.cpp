@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "nerf/effects/exposure_fit.h"
-#include "nerf/effects/poses.h"
+#include "nerf/field/poses.h"
 #include "nerf/field/tensor_span.h"
-#include "nerf/train/engine.h"
-#include "nerf/train/model.h"
+#include "nerf/model/model.h"
+#include "nerf/render/engine.h"
 #include "nerf/train/tally.h"
 
 namespace nerf {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "nerf/data/dataset.h"
-#include "nerf/data/pixel_sampler.h"
-#include "nerf/sampling/rays.h"
+#include "nerf/geometry/rays.h"
+#include "nerf/scene/dataset.h"
+#include "nerf/scene/pixel_sampler.h"
 
 namespace nerf {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "nerf/data/camera.h"
 #include "nerf/sampling/contraction.h"
+#include "nerf/scene/camera.h"
 
 namespace nerf {
 namespace {
@@ -17,7 +17,7 @@ struct Sight {
   double half_angle;  // of the cone, radians
 };
 
-double HalfAngle(const sfm::Camera& camera) {
+double HalfAngle(const Camera& camera) {
   double widest = 0;
   constexpr int kPointsOnAnEdge = 9;
   for (int i = 0; i < kPointsOnAnEdge; ++i) {
@@ -40,7 +40,7 @@ bool Sees(const Sight& sight, const Eigen::Vector3d& x_in_normalized, double rad
   if (distance <= radius) return true;
   const double angle = std::acos(std::clamp(x.z() / distance, -1.0, 1.0));
   if (angle > sight.half_angle + std::asin(radius / distance)) return false;
-  const sfm::Camera& camera = sight.view->camera;
+  const Camera& camera = sight.view->camera;
   const auto pixel = PixelFromPoint(camera, x);
   if (!pixel) return true;  // beyond the lens' reach, yet the ball touches the cone
   const double margin = FocalLength(camera) * radius / distance + 1.0;

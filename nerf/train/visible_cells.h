@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "nerf/data/dataset.h"
 #include "nerf/sampling/occupancy_grid.h"
+#include "nerf/scene/dataset.h"
 
 namespace nerf {
 

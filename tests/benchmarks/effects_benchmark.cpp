@@ -4,14 +4,14 @@
 #include <cmath>
 #include <string>
 
-#include "nerf/config.h"
-#include "nerf/data/camera.h"
-#include "nerf/data/dataset.h"
-#include "nerf/data/pixel_sampler.h"
-#include "nerf/parallel.h"
-#include "nerf/train/effect_trial.h"
-#include "nerf/train/engine.h"
-#include "nerf/train/model.h"
+#include "nerf/base/parallel.h"
+#include "nerf/config/config.h"
+#include "nerf/model/model.h"
+#include "nerf/pipeline/effect_trial.h"
+#include "nerf/render/engine.h"
+#include "nerf/scene/camera.h"
+#include "nerf/scene/dataset.h"
+#include "nerf/scene/pixel_sampler.h"
 
 namespace nerf {
 namespace {

@@ -8,13 +8,13 @@
 #include <memory>
 #include <vector>
 
-#include "nerf/config.h"
+#include "nerf/base/parallel.h"
+#include "nerf/config/config.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
-#include "nerf/parallel.h"
+#include "nerf/render/fused_engine.h"
+#include "nerf/render/libtorch_engine.h"
 #include "nerf/sampling/occupancy_grid.h"
-#include "nerf/train/fused_engine.h"
-#include "nerf/train/libtorch_engine.h"
 #include "tests/benchmarks/machine_limits.h"
 
 namespace nerf {

@@ -3,8 +3,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  sfm::PosedImages images;
-  images.cameras = {{sfm::CameraModel::kPinhole, 8, 6, {8, 8, 4, 3}}};
+  nerf::PosedImages images;
+  images.cameras = {{nerf::CameraModel::kPinhole, 8, 6, {8, 8, 4, 3}}};
   images.images.resize(1);
   const auto file = nerf::fuzz::WriteFile("path.json", bytes);
   nerf::fuzz::Expect([&] { nerf::ReadCameraPath(file); });

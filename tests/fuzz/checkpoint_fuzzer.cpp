@@ -1,4 +1,4 @@
-#include "nerf/train/checkpoint_file.h"
+#include "nerf/base/checkpoint_file.h"
 #include "tests/fuzz/with_checksum.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,7 +7,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   nerf::fuzz::WriteFile("images.txt", nerf::fuzz::Part(bytes, 1));
   nerf::fuzz::WriteFile("points3D.txt", nerf::fuzz::Part(bytes, 2));
   nerf::fuzz::WriteFile("a.ppm", nerf::fuzz::kImage);
-  nerf::fuzz::Expect([] { sfm::ReadColmapModel(nerf::fuzz::Folder(), nerf::fuzz::Folder()); });
-  nerf::fuzz::Expect([] { sfm::CountRegistered(nerf::fuzz::Folder()); });
+  nerf::fuzz::Expect(
+      [] { nerf::sfm::ReadColmapModel(nerf::fuzz::Folder(), nerf::fuzz::Folder()); });
+  nerf::fuzz::Expect([] { nerf::sfm::CountRegistered(nerf::fuzz::Folder()); });
   return 0;
 }

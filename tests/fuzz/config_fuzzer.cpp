@@ -1,4 +1,4 @@
-#include "nerf/config.h"
+#include "nerf/config/config.h"
 #include "tests/fuzz/fuzz_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

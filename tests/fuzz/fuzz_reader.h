@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 
 // What every fuzz target is made of: the bytes of a hostile file, put where its reader looks.
 namespace nerf::fuzz {
@@ -53,7 +53,7 @@ template <class Read>
 void Expect(const Read& read) {
   try {
     read();
-  } catch (const sfm::InputError&) {
+  } catch (const InputError&) {
   }
 }
 

@@ -1,5 +1,5 @@
-#include "nerf/train/checkpoint.h"
-#include "nerf/train/model.h"
+#include "nerf/model/checkpoint.h"
+#include "nerf/model/model.h"
 #include "tests/fuzz/with_checksum.h"
 
 // From the file to a model.

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
 #include "tests/fuzz/fuzz_reader.h"
 
 int main(int argc, char** argv) {
@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   }
   int replayed = 0;
   for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
-    const std::string bytes = sfm::ReadWholeFile(entry.path());
+    const std::string bytes = nerf::ReadWholeFile(entry.path());
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
     ++replayed;
   }

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "nerf/data/srgb.h"
+#include "nerf/image/srgb.h"
 #include "nerf/kernels/histogram_loss.h"
+#include "nerf/reference/ray_histogram.h"
 #include "nerf/sampling/contraction.h"
 #include "nerf/sampling/ray_intervals.h"
 #include "tests/properties/properties.h"
-#include "tests/reference/ray_histogram.h"
 
 namespace nerf {
 namespace {

@@ -7,7 +7,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 using nerf::test::InputErrorOf;
@@ -95,4 +95,4 @@ TEST(SelectPairs, TakesTheBestOfEachPhotographAndItsNeighboursByName) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -4,12 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sfm/image_files.h"
+#include "nerf/image/image_files.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/photo_files.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -177,4 +177,4 @@ TEST_F(ColmapImages, UnwritableTargetIsNamed) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

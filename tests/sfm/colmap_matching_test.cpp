@@ -6,7 +6,7 @@
 #include "tests/support/colmap_database_file.h"
 #include "tests/support/colmap_run.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ TEST(NumberedSequence, IsOneTextAroundNumbersOfOneWidth) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

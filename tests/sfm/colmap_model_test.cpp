@@ -11,7 +11,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -298,4 +298,4 @@ TEST_F(ColmapModel, LargestSubModelIsChosenWhateverItsNumber) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -11,7 +11,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/photo_files.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 using nerf::test::FakeColmap;
@@ -121,4 +121,4 @@ TEST(ParseProgress, UnderstandsOldAndNewLines) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -7,7 +7,7 @@
 
 #include "tests/support/colmap_run.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -270,4 +270,4 @@ TEST(ColmapRunnerForReal, NeighbouringPhotosOfTheFoxAreRegistered) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "nerf/sample/sample_folder.h"
+#include "nerf/synthetic/sample_folder.h"
 #include "sfm/colmap_model.h"
 #include "sfm/transforms_json.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 TEST(ColmapText, ComesBack) {
@@ -50,4 +50,4 @@ TEST(ColmapText, ComesBack) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -10,7 +10,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 using nerf::test::InputErrorOf;
@@ -146,4 +146,4 @@ TEST_F(Llff, FolderWithoutImagesIsRefused) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

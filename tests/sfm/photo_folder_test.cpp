@@ -7,7 +7,7 @@
 #include "tests/support/photo_files.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ TEST(PhotoFolder, FewerThanTwoReadableIsAnErrorWithTheCount) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

@@ -7,7 +7,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ TEST_F(PoseInput, FoxIsATransformsJson) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

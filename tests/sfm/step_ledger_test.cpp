@@ -7,7 +7,7 @@
 #include "tests/support/photo_files.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 using State = StepLedger::State;
@@ -78,4 +78,4 @@ TEST(StepLedger, UnwritableFileIsNamed) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

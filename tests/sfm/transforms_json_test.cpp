@@ -10,7 +10,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -289,4 +289,4 @@ TEST_F(TransformsJson, FileCutAtAnyByteIsRefused) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

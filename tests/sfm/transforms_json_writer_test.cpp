@@ -4,13 +4,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "sfm/camera_intrinsics.h"
-#include "sfm/camera_models.h"
+#include "nerf/scene/camera_intrinsics.h"
+#include "nerf/scene/camera_models.h"
 #include "sfm/transforms_json.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace sfm {
+namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -128,4 +128,4 @@ TEST(TransformsJsonWriter, UnwritableFolderIsNamedAndNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace sfm
+}  // namespace nerf::sfm

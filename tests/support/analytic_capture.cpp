@@ -5,9 +5,9 @@
 #include <numbers>
 #include <numeric>
 
-#include "nerf/data/camera.h"
-#include "nerf/data/pixel_sampler.h"
-#include "nerf/train/engine.h"
+#include "nerf/render/engine.h"
+#include "nerf/scene/camera.h"
+#include "nerf/scene/pixel_sampler.h"
 
 namespace nerf::test {
 
@@ -31,7 +31,7 @@ AnalyticCapture::AnalyticCapture(const std::vector<Eigen::Isometry3d>& cameras, 
                                  int height, const SeenAlong& seen, bool has_alpha,
                                  int hold_out_every) {
   data.has_alpha = has_alpha;
-  const sfm::Camera lens = PinholeFromFov(width, height, 0.7);
+  const Camera lens = PinholeFromFov(width, height, 0.7);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     View view;
     view.name = std::to_string(i);

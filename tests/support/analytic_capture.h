@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "nerf/data/dataset.h"
-#include "nerf/train/model.h"
+#include "nerf/model/model.h"
+#include "nerf/scene/dataset.h"
 
 namespace nerf::test {
 

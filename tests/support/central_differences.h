@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "nerf/libtorch.h"
+#include "nerf/field/libtorch.h"
 
 namespace nerf::test {
 

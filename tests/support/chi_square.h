@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "nerf/sampling/random.h"
+#include "nerf/base/random.h"
 
 namespace nerf::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "sfm/camera_models.h"
+#include "nerf/scene/camera_models.h"
 #include "sfm/colmap_records.h"
 
 namespace nerf::test {
@@ -74,8 +74,8 @@ inline ColmapFiles TextColmapFiles(const ColmapContents& contents) {
   ColmapFiles files;
   files.cameras = "# Camera list with one line of data per camera:\n";
   for (const auto& [id, camera] : contents.cameras) {
-    files.cameras += fmt::format("{} {} {} {}", id, sfm::CameraModelName(camera.model),
-                                 camera.width, camera.height);
+    files.cameras +=
+        fmt::format("{} {} {} {}", id, CameraModelName(camera.model), camera.width, camera.height);
     for (const double param : camera.params) files.cameras += fmt::format(" {}", param);
     files.cameras += '\n';
   }
@@ -105,8 +105,6 @@ inline ColmapFiles TextColmapFiles(const ColmapContents& contents) {
 
 // Three images out of order, two cameras, two points that all of them see.
 inline ColmapContents SmallColmapContents() {
-  using sfm::Camera;
-  using sfm::CameraModel;
   ColmapContents contents;
   contents.cameras[3] = Camera{CameraModel::kSimpleRadial, 12, 8, {10, 6, 4, 0.1}};
   contents.cameras[9] = Camera{CameraModel::kPinhole, 6, 5, {7, 8, 3, 2.5}};

@@ -40,7 +40,7 @@ class ColmapRun : public testing::Test {
       WritePhoto(photos_.path() / fmt::format("p{:03}.png", i), 64, 48);
     }
   }
-  sfm::PosedImages Run() {
+  PosedImages Run() {
     report_ = {};
     return sfm::PosesFromPhotos(photos_.path(), Workspace(), options_, &report_);
   }

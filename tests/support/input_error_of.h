@@ -5,17 +5,17 @@
 
 #include <string>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 
 namespace nerf::test {
 
-// The message of the sfm::InputError that a call throws, or "no error". Any other exception is a
+// The message of the InputError that a call throws, or "no error". Any other exception is a
 // failure; so is a message of several lines.
 template <class Call>
 std::string InputErrorOf(const Call& call) {
   try {
     call();
-  } catch (const sfm::InputError& error) {
+  } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
     return error.what();
   } catch (const std::exception& error) {

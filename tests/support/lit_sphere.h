@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "nerf/appearance/lights.h"
+#include "nerf/light/lights.h"
 
 namespace nerf::test {
 

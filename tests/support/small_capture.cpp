@@ -1,6 +1,6 @@
 #include "tests/support/small_capture.h"
 
-#include "sfm/scene_normalization.h"
+#include "nerf/scene/scene_normalization.h"
 
 namespace nerf::test {
 
@@ -11,11 +11,11 @@ SmallCapture MakeSmallCapture(int views, int width, int height) {
   options.height = height;
   SmallCapture small;
   small.capture = sample::MakeCapture(options);
-  sfm::PosedImages& posed = small.capture.posed;
+  PosedImages& posed = small.capture.posed;
   AssignSplits(posed, DataOptions());
-  small.scene.normalized_from_world = sfm::NormalizeScene(posed);
+  small.scene.normalized_from_world = NormalizeScene(posed);
   for (std::size_t i = 0; i < posed.images.size(); ++i) {
-    if (posed.images[i].split != sfm::Split::kTrain) continue;
+    if (posed.images[i].split != Split::kTrain) continue;
     View view;
     view.name = posed.images[i].name;
     view.camera = posed.cameras[posed.images[i].camera];

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "nerf/data/dataset.h"
-#include "nerf/sample/capture.h"
-#include "nerf/train/model.h"
+#include "nerf/model/model.h"
+#include "nerf/scene/dataset.h"
+#include "nerf/synthetic/capture.h"
 
 namespace nerf::test {
 

@@ -12,8 +12,8 @@
 
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
+#include "nerf/render/libtorch_engine.h"
 #include "nerf/sampling/occupancy_grid.h"
-#include "nerf/train/libtorch_engine.h"
 
 namespace nerf::test {
 

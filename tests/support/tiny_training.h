@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "nerf/libtorch.h"
-#include "nerf/train/checkpoint.h"
-#include "nerf/train/run_folder.h"
+#include "nerf/field/libtorch.h"
+#include "nerf/model/checkpoint.h"
+#include "nerf/model/run_folder.h"
 #include "nerf/train/trainer.h"
 #include "tests/support/scratch_folder.h"
 

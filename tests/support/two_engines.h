@@ -8,15 +8,15 @@
 #include <optional>
 #include <string>
 
-#include "nerf/effects/background.h"
-#include "nerf/effects/exposure.h"
-#include "nerf/effects/poses.h"
+#include "nerf/field/background.h"
+#include "nerf/field/exposure.h"
+#include "nerf/field/libtorch.h"
+#include "nerf/field/poses.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
-#include "nerf/libtorch.h"
+#include "nerf/render/fused_engine.h"
+#include "nerf/render/libtorch_engine.h"
 #include "nerf/sampling/occupancy_grid.h"
-#include "nerf/train/fused_engine.h"
-#include "nerf/train/libtorch_engine.h"
 
 namespace nerf::test {
 

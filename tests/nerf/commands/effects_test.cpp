@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "nerf/data/image_io.h"
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/image/image_io.h"
 #include "tests/nerf/commands/run_program.h"
 #include "tests/support/scratch_folder.h"
 
@@ -50,7 +50,7 @@ class EffectsCommands : public testing::Test {
   }
 
   static nlohmann::json Json(const std::string& file) {
-    return nlohmann::json::parse(sfm::ReadWholeFile(Path(file)));
+    return nlohmann::json::parse(ReadWholeFile(Path(file)));
   }
 
   // A refusal: one line, exit status 2, naming what is wrong.
@@ -227,8 +227,7 @@ TEST_F(EffectsCommands, WhatAPersonSaysStands) {
   EXPECT_TRUE(Json("configured/config.json").at("effects").at("exposure").is_null());
   EXPECT_EQ(Json("configured/config.json").at("march").at("near_distance"), 0.05);
 
-  sfm::WriteFileAtomically(Path("mine.json"),
-                           R"({"parent": "base", "effects": {"exposure": null}})");
+  WriteFileAtomically(Path("mine.json"), R"({"parent": "base", "effects": {"exposure": null}})");
   const auto pinned = RunNerf(Train("exposure", "pinned", "--config " + Path("mine.json")));
   EXPECT_EQ(pinned.exit_status, 0) << pinned.output;
   EXPECT_TRUE(Json("pinned/config.json").at("effects").at("exposure").is_null());
@@ -238,7 +237,7 @@ TEST_F(EffectsCommands, MasksAreFoundAndCountInTrainingAndMeasuring) {
   const auto run = RunNerf(Train("masks", "masked", ""));
   ASSERT_EQ(run.exit_status, 0) << run.output;
   EXPECT_EQ(Json("masked/config.json").at("effects").at("masks").at("meaning"), "ignore");
-  EXPECT_THAT(sfm::ReadWholeFile(Path("masked/transforms.json")), HasSubstr("mask_path"));
+  EXPECT_THAT(ReadWholeFile(Path("masked/transforms.json")), HasSubstr("mask_path"));
   EXPECT_EQ(RunNerf("eval " + Path("masked")).exit_status, 0);
 }
 
@@ -251,11 +250,11 @@ TEST_F(EffectsCommands, RefuseWhatCannotBe) {
   EXPECT_FALSE(fs::exists(Path("x")));
 
   const std::string masks = Path("masks/masks/view_003.png");
-  const std::string before = sfm::ReadWholeFile(masks);
+  const std::string before = ReadWholeFile(masks);
   WriteImage(masks, Image(8, 8, 3));
   ExpectRefused("inspect " + Path("masks/truth/sparse"),
                 AllOf(HasSubstr("view_003.png"), HasSubstr("8x8"), HasSubstr("64x48")));
-  sfm::WriteFileAtomically(masks, before);
+  WriteFileAtomically(masks, before);
 }
 
 }  // namespace

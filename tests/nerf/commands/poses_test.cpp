@@ -57,7 +57,7 @@ TEST_F(PosesCommand, WritesPosesThatCanBeReadBackAndPrintsATable) {
   EXPECT_THAT(said.text, AllOf(HasSubstr("registered                4"), HasSubstr("e.png"),
                                HasSubstr("broken.png"), HasSubstr("0.50 pixels"),
                                HasSubstr("seconds, matches")));
-  const sfm::PosedImages posed = sfm::ReadTransformsJson(out_.path() / "transforms.json");
+  const PosedImages posed = sfm::ReadTransformsJson(out_.path() / "transforms.json");
   ASSERT_EQ(posed.images.size(), 4u);
   EXPECT_TRUE(fs::equivalent(posed.images[0].path, photos_.path() / "a.png"));
   EXPECT_NEAR((posed.images[1].world_from_camera.translation() + Eigen::Vector3d(2, 0, 0)).norm(),

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
 #include "tests/nerf/commands/run_program.h"
 #include "tests/support/scratch_folder.h"
 
@@ -94,12 +94,12 @@ TEST_F(TrainCommand, AKilledRunResumesBitForBit) {
 TEST_F(TrainCommand, AFullDiskLeavesTheLastGoodCheckpointToResumeFrom) {
   ASSERT_NO_FATAL_FAILURE(KillAtFirstCheckpoint("full"));
   const std::string resume = "train --resume --threads 2 -o " + Path("full");
-  const std::string before = sfm::ReadWholeFile(Path("full/checkpoint.nerf"));
+  const std::string before = ReadWholeFile(Path("full/checkpoint.nerf"));
   const auto full = RunNerf(resume, "trap '' XFSZ; ulimit -f 64;");
   EXPECT_EQ(full.exit_status, 2) << full.output;
   EXPECT_THAT(full.output, AllOf(HasSubstr("full/checkpoint.nerf"), HasSubstr("cannot be written"),
                                  Not(HasSubstr("terminate"))));
-  EXPECT_TRUE(sfm::ReadWholeFile(Path("full/checkpoint.nerf")) == before);
+  EXPECT_TRUE(ReadWholeFile(Path("full/checkpoint.nerf")) == before);
   const auto resumed = RunNerf(resume);
   EXPECT_EQ(resumed.exit_status, 0) << resumed.output;
 }
@@ -158,10 +158,10 @@ TEST_F(TrainCommand, RendersWithoutThePhotographsAndSaysWhichEvalMissed) {
 
 TEST_F(TrainCommand, NeverWritesOverFilesThatAreNotItsOwn) {
   fs::copy(Path("sample/truth"), Path("mine"), fs::copy_options::recursive);
-  const std::string before = sfm::ReadWholeFile(Path("mine/transforms.json"));
+  const std::string before = ReadWholeFile(Path("mine/transforms.json"));
   ExpectRefused("train " + Path("mine/transforms.json") + " -o " + Path("mine"),
                 AllOf(HasSubstr("mine/transforms.json"), HasSubstr("-o")));
-  EXPECT_EQ(sfm::ReadWholeFile(Path("mine/transforms.json")), before);
+  EXPECT_EQ(ReadWholeFile(Path("mine/transforms.json")), before);
   EXPECT_FALSE(fs::exists(Path("mine/config.json")));
 }
 
@@ -206,7 +206,7 @@ TEST_F(TrainCommand, ATimeBudgetIsKeptWhateverTheSteps) {
   ASSERT_EQ(result.exit_status, 0) << result.output;
   EXPECT_THAT(result.output,
               AllOf(HasSubstr("time budget 0:06: preset"), HasSubstr("next: nerf eval")));
-  const auto config = nlohmann::json::parse(sfm::ReadWholeFile(Path("budget/config.json")));
+  const auto config = nlohmann::json::parse(ReadWholeFile(Path("budget/config.json")));
   EXPECT_EQ(config["train"]["time_budget"], 6);
 }
 
@@ -263,7 +263,7 @@ TEST_F(TrainCommand, ABrokenCheckpointIsNamed) {
 TEST_F(TrainCommand, BrokenPosesAreNamed) {
   folder_->Write("bad/transforms.json", R"({"frames": [)");
   ExpectRefused("train " + Path("bad") + " -o " + Path("x"), HasSubstr("bad/transforms.json"));
-  auto poses = nlohmann::json::parse(sfm::ReadWholeFile(Poses()));
+  auto poses = nlohmann::json::parse(ReadWholeFile(Poses()));
   for (auto& frame : poses["frames"]) {
     frame["file_path"] = Path("sample/images/") +
                          fs::path(frame["file_path"].get<std::string>()).filename().string();

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
 #include "tests/nerf/commands/run_program.h"
 #include "tests/support/scratch_folder.h"
 
@@ -48,7 +48,7 @@ class TrialsCommands : public testing::Test {
   static constexpr char kShort[] = "--set train.validate_every=20 --target-psnr 1";
 
   nlohmann::json Json(const std::string& file) const {
-    return nlohmann::json::parse(sfm::ReadWholeFile(Path(file)));
+    return nlohmann::json::parse(ReadWholeFile(Path(file)));
   }
 
   // The effects that were tried, of which each stands in the configuration as it was decided.
@@ -127,7 +127,7 @@ TEST_F(TrialsCommands, DepthThatATrialDecidedForResumes) {
   const auto resumed = RunNerf("train --resume --threads 2 -o " + Path("killed"));
   ASSERT_EQ(resumed.exit_status, 0) << resumed.output;
   const auto loss = [&](const std::string& run) {
-    const std::string lines = sfm::ReadWholeFile(Path(run + "/metrics.jsonl"));
+    const std::string lines = ReadWholeFile(Path(run + "/metrics.jsonl"));
     const auto last = nlohmann::json::parse(lines.substr(lines.rfind('\n', lines.size() - 2) + 1));
     EXPECT_EQ(last.at("step"), 120);
     return last.at("loss").get<double>();

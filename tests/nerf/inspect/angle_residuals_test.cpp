@@ -19,7 +19,7 @@ class SeenFromAnArc : public testing::Test {
   SeenFromAnArc() {
     for (int i = 0; i < kCameras; ++i) {
       const double angle = AngleOf(i);
-      sfm::PosedImage image;
+      PosedImage image;
       image.world_from_camera = Eigen::Translation3d(3 * std::sin(angle), 0, 3 * std::cos(angle));
       posed_.images.push_back(image);
     }
@@ -42,7 +42,7 @@ class SeenFromAnArc : public testing::Test {
     return ResidualsByAngle(posed_, colors_, fit);
   }
 
-  sfm::PosedImages posed_;
+  PosedImages posed_;
   TrackColors colors_;
 };
 

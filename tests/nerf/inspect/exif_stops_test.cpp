@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "nerf/data/camera.h"
-#include "nerf/inspect/inspect.h"
+#include "nerf/effects/inspection.h"
+#include "nerf/scene/camera.h"
 #include "tests/support/scratch_folder.h"
 
 namespace nerf {
@@ -24,7 +24,7 @@ using testing::HasSubstr;
 class ExifOfACapture : public testing::Test {
  protected:
   void Add(const std::map<std::string, float>& entries) {
-    sfm::PosedImage image;
+    PosedImage image;
     image.name = fmt::format("{}.jpg", posed_.images.size());
     image.path = folder_.path() / image.name;
     image.world_from_camera = Eigen::Isometry3d::Identity();
@@ -47,7 +47,7 @@ class ExifOfACapture : public testing::Test {
   }
 
   test::ScratchFolder folder_;
-  sfm::PosedImages posed_;
+  PosedImages posed_;
 };
 
 TEST_F(ExifOfACapture, TellsOfTheExposuresWhereNoPointsDo) {

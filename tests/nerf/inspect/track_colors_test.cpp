@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "nerf/sample/sample_folder.h"
+#include "nerf/synthetic/sample_folder.h"
 #include "sfm/colmap_model.h"
 #include "tests/support/scratch_folder.h"
 
@@ -15,24 +15,24 @@ namespace {
 constexpr double kNearby = 0.6;  // radians
 constexpr int kPhotograph = 5;   // that does not see what it should
 
-std::size_t UnseenBy(const sfm::PosedImages& posed, int photograph) {
+std::size_t UnseenBy(const PosedImages& posed, int photograph) {
   const std::vector<Sighting> unseen = ReadTrackColors(posed, kNearby).unseen;
   return static_cast<std::size_t>(std::ranges::count(unseen, photograph, &Sighting::photograph));
 }
 
 // Forgets that a photograph sees the points that `forget` names.
 template <class Forget>
-void Blind(sfm::PosedImages& posed, const Forget& forget) {
+void Blind(PosedImages& posed, const Forget& forget) {
   for (int p = 0; p < static_cast<int>(posed.points.size()); ++p) {
     std::erase_if(posed.points[p].track,
-                  [&](const sfm::TrackElement& seen) { return forget(p, seen.image); });
+                  [&](const TrackElement& seen) { return forget(p, seen.image); });
   }
 }
 
 // Of the photographs that see a point, the one that looks most nearly from where another does.
-int NeighbourOf(const sfm::PosedImages& posed, int point) {
+int NeighbourOf(const PosedImages& posed, int point) {
   const auto& track = posed.points[point].track;
-  const auto nearest = std::ranges::min_element(track, {}, [&](const sfm::TrackElement& seen) {
+  const auto nearest = std::ranges::min_element(track, {}, [&](const TrackElement& seen) {
     return AngleAt(posed, point, kPhotograph, seen.image);
   });
   return nearest == track.end() ? -1 : nearest->image;
@@ -47,7 +47,7 @@ TEST(TrackColors, APointThatTheNeighbourSeesIsMissed) {
   options.height = 90;
   options.samples_per_pixel = 1;
   sample::WriteSample(folder.path(), options);
-  sfm::PosedImages posed =
+  PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   EXPECT_LT(UnseenBy(posed, kPhotograph), 3u);
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "nerf/data/camera.h"
-#include "nerf/data/image_io.h"
+#include "nerf/image/image_io.h"
+#include "nerf/scene/camera.h"
 #include "tests/support/scratch_folder.h"
 
 namespace nerf {
@@ -16,13 +16,13 @@ using Eigen::Vector3d;
 // A ball before six cameras along the axes, cut out by alpha.
 struct CutOutBall {
   test::ScratchFolder folder;
-  sfm::PosedImages posed;
+  PosedImages posed;
 
   CutOutBall(const Vector3d& centre, double radius, bool see_through = true) {
     posed.cameras = {PinholeFromFov(120, 120, 1.0)};
     for (int i = 0; i < 6; ++i) {
       const Vector3d from = (i % 2 ? 4.0 : -4.0) * Vector3d::Unit(i / 2);
-      sfm::PosedImage image;
+      PosedImage image;
       image.name = std::to_string(i) + ".png";
       image.path = folder.path() / image.name;
       image.world_from_camera = Eigen::Isometry3d::Identity();
@@ -47,7 +47,7 @@ struct CutOutBall {
 TEST(BallAboutHull, HoldsTheObjectTightly) {
   const Vector3d centre(0.3, -0.2, 0.1);
   const CutOutBall object(centre, 0.5);
-  const auto ball = BallAboutHull(object.posed, sfm::SceneNormalization());
+  const auto ball = BallAboutHull(object.posed, SceneNormalization());
   ASSERT_TRUE(ball);
   EXPECT_LT((ball->centre - centre).norm(), 0.08);
   EXPECT_GT(ball->radius, 0.5);
@@ -57,15 +57,15 @@ TEST(BallAboutHull, HoldsTheObjectTightly) {
 
 TEST(BallAboutHull, IsNoneWhereNothingIsTransparent) {
   const CutOutBall object(Vector3d::Zero(), 0.5, false);
-  EXPECT_FALSE(BallAboutHull(object.posed, sfm::SceneNormalization()));
+  EXPECT_FALSE(BallAboutHull(object.posed, SceneNormalization()));
 }
 
 TEST(BallAboutHull, BecomesTheUnitBall) {
-  sfm::SceneNormalization frame;
+  SceneNormalization frame;
   frame.scale = 0.7;
   frame.translation = {1, 2, 3};
   const Ball ball = {{0.3, -0.2, 0.1}, 0.6};
-  const sfm::SceneNormalization fitted = FittedTo(ball, frame);
+  const SceneNormalization fitted = FittedTo(ball, frame);
   const Vector3d centre = frame.WorldFromNormalized(ball.centre);
   const Vector3d surface = frame.WorldFromNormalized(ball.centre + Vector3d(0, 0.6, 0));
   EXPECT_LT(fitted.NormalizedFromWorld(centre).norm(), 1e-12);

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "tests/reference/hash_encoding.h"
+#include "nerf/reference/hash_encoding.h"
 
 namespace nerf::kernels {
 namespace {
@@ -61,7 +61,8 @@ TEST(HashGridLayout, DenseLevelsGiveEveryVertexItsOwnEntry) {
   std::set<std::uint32_t> entries;
   for (std::uint32_t x = 0; x <= 4; ++x) {
     for (std::uint32_t y = 0; y <= 4; ++y) {
-      for (std::uint32_t z = 0; z <= 4; ++z) entries.insert(reference::HashGridEntry(level, x, y, z));
+      for (std::uint32_t z = 0; z <= 4; ++z)
+        entries.insert(reference::HashGridEntry(level, x, y, z));
     }
   }
   EXPECT_EQ(entries.size(), 125u);

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <vector>
 
+#include "nerf/base/parallel.h"
 #include "nerf/kernels/adam.h"
 #include "nerf/kernels/hash_encoding_tile.h"
 #include "nerf/kernels/mlp.h"
 #include "nerf/kernels/volume_rendering.h"
-#include "nerf/parallel.h"
 
 namespace nerf::kernels {
 namespace {

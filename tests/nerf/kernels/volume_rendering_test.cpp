@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "tests/reference/volume_rendering.h"
+#include "nerf/reference/volume_rendering.h"
 
 namespace nerf::kernels {
 namespace {

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "nerf/data/camera.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/scene/camera.h"
 
 namespace nerf {
 namespace {
@@ -37,7 +37,7 @@ class CameraPathJson : public testing::Test {
   static std::string Catch(const std::function<void()>& call) {
     try {
       call();
-    } catch (const sfm::InputError& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "no error";
@@ -93,13 +93,13 @@ TEST_F(CameraPathJson, MatricesMayBeNestedOrWithoutTheLastRow) {
 
 TEST_F(CameraPathJson, SizeCanBeOverriddenAndKeepsTheAngle) {
   const fs::path file = Write(OneCamera(kAboveOrigin).dump());
-  const sfm::Camera wide = ReadCameraPath(file, 320).poses[0].camera;
+  const Camera wide = ReadCameraPath(file, 320).poses[0].camera;
   EXPECT_EQ(wide.width, 320);
   EXPECT_EQ(wide.height, 180);
   EXPECT_NEAR(wide.params[0], 90 / std::tan(M_PI / 6), 1e-9);
-  const sfm::Camera low = ReadCameraPath(file, {}, 45).poses[0].camera;
+  const Camera low = ReadCameraPath(file, {}, 45).poses[0].camera;
   EXPECT_EQ(low.width, 80);
-  const sfm::Camera both = ReadCameraPath(file, 50, 40).poses[0].camera;
+  const Camera both = ReadCameraPath(file, 50, 40).poses[0].camera;
   EXPECT_EQ(both.width, 50);
   EXPECT_EQ(both.height, 40);
 }
@@ -151,11 +151,11 @@ TEST_F(CameraPathJson, WhatIsWrongIsNamed) {
 class PoseJson : public CameraPathJson {
  protected:
   PoseJson() {
-    images_.cameras.push_back({sfm::CameraModel::kSimpleRadial, 80, 60, {70, 41, 29, 0.1}});
+    images_.cameras.push_back({CameraModel::kSimpleRadial, 80, 60, {70, 41, 29, 0.1}});
     images_.images.emplace_back().world_from_camera.setIdentity();
   }
   PathPose Read(const json& value) const { return ReadPose(Write(value.dump()), images_); }
-  sfm::PosedImages images_;
+  PosedImages images_;
 };
 
 TEST_F(PoseJson, TakesTheFirstCameraWhereNoLensIsGiven) {
@@ -173,11 +173,11 @@ TEST_F(PoseJson, TakesAFieldOfView) {
 }
 
 TEST_F(PoseJson, TakesTheLensKeysOfATransformsJson) {
-  const sfm::Camera camera =
+  const Camera camera =
       Read({{"transform_matrix", kNested}, {"fl_x", 50}, {"w", 40}, {"h", 30}, {"k1", 0.2}}).camera;
   EXPECT_EQ(camera.width, 40);
   EXPECT_DOUBLE_EQ(FocalLength(camera), 50);
-  EXPECT_EQ(camera.model, sfm::CameraModel::kOpenCV);
+  EXPECT_EQ(camera.model, CameraModel::kOpenCV);
 }
 
 TEST_F(PoseJson, NamesTheMissingMatrix) {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 
 namespace nerf {
 namespace {
@@ -20,24 +20,23 @@ using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
 const Vector3d kTarget(4, -3, 10);
 
-sfm::PosedImages WithCamera() {
-  sfm::PosedImages posed;
-  posed.cameras.push_back(
-      {sfm::CameraModel::kOpenCV, 80, 60, {70, 72, 41, 29, 0.1, 0.0, 0.0, 0.0}});
+PosedImages WithCamera() {
+  PosedImages posed;
+  posed.cameras.push_back({CameraModel::kOpenCV, 80, 60, {70, 72, 41, 29, 0.1, 0.0, 0.0, 0.0}});
   posed.source = "cameras.json";
   return posed;
 }
 
-void Add(sfm::PosedImages& posed, const std::string& name, const Isometry3d& world_from_camera) {
-  sfm::PosedImage image;
+void Add(PosedImages& posed, const std::string& name, const Isometry3d& world_from_camera) {
+  PosedImage image;
   image.name = name;
   image.world_from_camera = world_from_camera;
   posed.images.push_back(image);
 }
 
 // Cameras on a ring of radius 3, 1.5 above the target, looking at it; z is up.
-sfm::PosedImages Ring(int count) {
-  sfm::PosedImages posed = WithCamera();
+PosedImages Ring(int count) {
+  PosedImages posed = WithCamera();
   for (int i = 0; i < count; ++i) {
     const double angle = 2 * kPi * i / count + 0.3;
     const Vector3d center = kTarget + Vector3d(3 * std::cos(angle), 3 * std::sin(angle), 1.5);
@@ -48,8 +47,8 @@ sfm::PosedImages Ring(int count) {
 }
 
 // Cameras in a plane, all looking along +y.
-sfm::PosedImages ForwardFacing() {
-  sfm::PosedImages posed = WithCamera();
+PosedImages ForwardFacing() {
+  PosedImages posed = WithCamera();
   posed.depth_range_in_world = {{2.0, 20.0}};
   for (int i = 0; i < 20; ++i) {
     const Vector3d center(0.3 * (i % 5 - 2), 0, 0.2 * (i / 5 - 1.5));
@@ -80,13 +79,13 @@ double LongestStep(const CameraPath& path) {
   return longest;
 }
 
-CameraPath Orbit(const sfm::PosedImages& posed, int frames) {
-  return OrbitPath(
-      posed, posed.images.empty() ? sfm::SceneNormalization() : sfm::NormalizeScene(posed), frames);
+CameraPath Orbit(const PosedImages& posed, int frames) {
+  return OrbitPath(posed, posed.images.empty() ? SceneNormalization() : NormalizeScene(posed),
+                   frames);
 }
-CameraPath Spiral(const sfm::PosedImages& posed, int frames) {
-  return SpiralPath(
-      posed, posed.images.empty() ? sfm::SceneNormalization() : sfm::NormalizeScene(posed), frames);
+CameraPath Spiral(const PosedImages& posed, int frames) {
+  return SpiralPath(posed, posed.images.empty() ? SceneNormalization() : NormalizeScene(posed),
+                    frames);
 }
 
 TEST(LookAt, PutsTheTargetAheadAndUpUpwards) {
@@ -116,14 +115,14 @@ TEST(OrbitPath, StaysOnTheCirclesRadiusAndHeightAndLooksAtTheTarget) {
 }
 
 TEST(OrbitPath, StartsAtTheFirstCameraAndCloses) {
-  const sfm::PosedImages ring = Ring(9);
+  const PosedImages ring = Ring(9);
   const CameraPath path = Orbit(ring, 40);
   EXPECT_LT((Center(path.poses[0]) - ring.images[0].world_from_camera.translation()).norm(), 1e-6);
   EXPECT_NEAR(LongestStep(path), 2 * 3 * std::sin(kPi / 40), 1e-6);
 }
 
 TEST(OrbitPath, LooksOutwardsWhereTheCamerasDo) {
-  sfm::PosedImages posed = WithCamera();
+  PosedImages posed = WithCamera();
   for (int i = 0; i < 8; ++i) {
     const Vector3d out(std::cos(kPi * i / 4), std::sin(kPi * i / 4), 0);
     Add(posed, std::to_string(i), LookAt(out, 2 * out, Vector3d::UnitZ()));
@@ -134,8 +133,8 @@ TEST(OrbitPath, LooksOutwardsWhereTheCamerasDo) {
 }
 
 TEST(OrbitPath, TakesTheFirstLensWithoutItsDistortion) {
-  const sfm::Camera camera = Orbit(Ring(5), 3).poses[2].camera;
-  EXPECT_EQ(camera.model, sfm::CameraModel::kPinhole);
+  const Camera camera = Orbit(Ring(5), 3).poses[2].camera;
+  EXPECT_EQ(camera.model, CameraModel::kPinhole);
   EXPECT_EQ(camera.width, 80);
   EXPECT_EQ(camera.height, 60);
   EXPECT_THAT(camera.params, testing::ElementsAre(71, 71, 41, 29));
@@ -183,8 +182,8 @@ TEST(SpiralPath, OfOneCameraStaysThere) {
 }
 
 TEST(TrainingPath, MeetsEveryCameraInOrderOfName) {
-  sfm::PosedImages ring = Ring(7);
-  const std::vector<sfm::PosedImage> by_name = ring.images;
+  PosedImages ring = Ring(7);
+  const std::vector<PosedImage> by_name = ring.images;
   std::ranges::reverse(ring.images);
   const CameraPath path = TrainingPath(ring, 6 * 10 + 1);
   ASSERT_EQ(path.poses.size(), 61);
@@ -216,19 +215,19 @@ TEST(TrainingPath, MovesAndTurnsWithoutJerks) {
 }
 
 TEST(TrainingPath, LeavesHeldOutCamerasAside) {
-  sfm::PosedImages ring = Ring(3);
-  ring.images[0].split = sfm::Split::kTest;
+  PosedImages ring = Ring(3);
+  ring.images[0].split = Split::kTest;
   const CameraPath path = TrainingPath(ring, 2);
   EXPECT_LT((Center(path.poses[0]) - ring.images[1].world_from_camera.translation()).norm(), 1e-9);
-  for (sfm::PosedImage& image : ring.images) image.split = sfm::Split::kTest;
-  EXPECT_THROW(TrainingPath(ring, 2), sfm::InputError);
+  for (PosedImage& image : ring.images) image.split = Split::kTest;
+  EXPECT_THROW(TrainingPath(ring, 2), InputError);
 }
 
 TEST(CameraPaths, NeedCamerasAndAReasonableNumberOfFrames) {
   for (const auto make : {Orbit, Spiral, TrainingPath}) {
-    EXPECT_THROW(make(WithCamera(), 5), sfm::InputError);
-    EXPECT_THROW(make(Ring(5), 0), sfm::InputError);
-    EXPECT_THROW(make(Ring(5), 2'000'000'000), sfm::InputError);
+    EXPECT_THROW(make(WithCamera(), 5), InputError);
+    EXPECT_THROW(make(Ring(5), 0), InputError);
+    EXPECT_THROW(make(Ring(5), 2'000'000'000), InputError);
     EXPECT_EQ(make(Ring(5), 1).poses.size(), 1);
   }
 }

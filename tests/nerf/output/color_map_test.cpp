@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 #include "tests/support/constant_image.h"
 
 namespace nerf {
@@ -91,8 +91,8 @@ TEST(ColorizeError, GrowsWithTheDifference) {
 }
 
 TEST(ColorMaps, RefuseImagesThatDoNotMatch) {
-  EXPECT_THROW(ColorizeError(Image(3, 4, 3), Image(4, 3, 3)), sfm::InputError);
-  EXPECT_THROW(ColorizeDepth(Image(3, 4, 1), Image(4, 3, 1)), sfm::InputError);
+  EXPECT_THROW(ColorizeError(Image(3, 4, 3), Image(4, 3, 3)), InputError);
+  EXPECT_THROW(ColorizeDepth(Image(3, 4, 1), Image(4, 3, 1)), InputError);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
 #include "tests/support/constant_image.h"
 
 namespace nerf {
@@ -67,7 +67,7 @@ TEST(ContactSheet, WithoutRowsIsEmpty) { EXPECT_TRUE(ContactSheet({}).pixels.emp
 
 TEST(ContactSheet, RefusesPicturesThatDoNotMatch) {
   const std::vector<ContactSheetRow> rows = {{"", Image(3, 4, 3), Image(4, 3, 3)}};
-  EXPECT_THROW(ContactSheet(rows), sfm::InputError);
+  EXPECT_THROW(ContactSheet(rows), InputError);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <functional>
 #include <string>
 
-#include "nerf/data/image_io.h"
-#include "sfm/input_error.h"
+#include "nerf/base/input_error.h"
+#include "nerf/image/image_io.h"
 
 namespace nerf {
 namespace {
@@ -49,7 +49,7 @@ class Video : public testing::Test {
   std::string ErrorOf(const std::function<void()>& call) const {
     try {
       call();
-    } catch (const sfm::InputError& e) {
+    } catch (const InputError& e) {
       return e.what();
     }
     return "no error";

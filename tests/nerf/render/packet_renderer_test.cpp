@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "nerf/base/input_error.h"
 #include "nerf/render/image_renderer.h"
-#include "sfm/input_error.h"
 #include "tests/support/simd_levels.h"
 #include "tests/support/two_engines.h"
 
@@ -182,8 +182,8 @@ TEST(RenderQuality, TheDialGoesFromFastToExact) {
   EXPECT_EQ(before.samples, proposal.samples);
   EXPECT_EQ(before.color_share, 0);
   EXPECT_EQ(before.stop_transmittance, march.stop_transmittance);
-  EXPECT_THROW(RenderQuality::Of(1.1, march, proposal), sfm::InputError);
-  EXPECT_THROW(RenderQuality::Of(std::nan(""), march, proposal), sfm::InputError);
+  EXPECT_THROW(RenderQuality::Of(1.1, march, proposal), InputError);
+  EXPECT_THROW(RenderQuality::Of(std::nan(""), march, proposal), InputError);
 }
 
 // Shows each ray's direction as its colour, and keeps the order in which rays came.
@@ -202,11 +202,11 @@ class DirectionRenderer : public RayRenderer {
 
 TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {
   for (const auto& [width, height] : {std::pair{4, 4}, {7, 5}, {1, 1}, {70, 41}}) {
-    sfm::Camera camera;
+    Camera camera;
     camera.width = width;
     camera.height = height;
     camera.params = {100, 100, width / 2.0, height / 2.0, 0, 0, 0, 0};
-    camera.model = sfm::CameraModel::kOpenCV;
+    camera.model = CameraModel::kOpenCV;
     DirectionRenderer renderer;
     std::int64_t done = 0;
     const RenderedView view =
@@ -238,8 +238,8 @@ TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {
 }
 
 TEST(RenderView, PixelsBesideTheLensBorrowTheRayOfANeighbour) {
-  sfm::Camera camera;
-  camera.model = sfm::CameraModel::kOpenCV;
+  Camera camera;
+  camera.model = CameraModel::kOpenCV;
   camera.width = camera.height = 200;
   camera.params = {100, 100, 100, 100, -0.3, 0, 0, 0};  // nothing is seen 71 pixels off the middle
   DirectionRenderer renderer;
@@ -256,7 +256,7 @@ TEST(RenderView, PixelsBesideTheLensBorrowTheRayOfANeighbour) {
 }
 
 TEST(RenderPreview, ShowsTheWholePictureFromFewRays) {
-  sfm::Camera camera;
+  Camera camera;
   camera.width = 21;
   camera.height = 13;
   camera.params = {100, 100, 10.5, 6.5};

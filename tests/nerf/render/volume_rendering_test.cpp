@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "nerf/libtorch.h"
-#include "nerf/parallel.h"
+#include "nerf/base/parallel.h"
+#include "nerf/field/libtorch.h"
 #include "tests/support/central_differences.h"
 
 namespace nerf {

@@ -15,7 +15,7 @@ OccupancyOptions Options() {
 }
 
 // Matter in a small ball in the middle of the cube.
-std::vector<float> Ball(std::span<const float> positions) {
+std::vector<float> DensityOfABall(std::span<const float> positions) {
   std::vector<float> density;
   for (std::size_t i = 0; i < positions.size(); i += 3) {
     const Eigen::Vector3f x(positions[i], positions[i + 1], positions[i + 2]);
@@ -30,7 +30,7 @@ TEST(OccupancyGrid, StartsFull) {
 
 TEST(OccupancyGrid, FindsMatterAndForgetsTheRest) {
   OccupancyGrid grid(Options(), 0.01f);
-  for (int step = 0; step < 60; ++step) grid.Update(step, 7, Ball);
+  for (int step = 0; step < 60; ++step) grid.Update(step, 7, DensityOfABall);
   EXPECT_TRUE(grid.Occupied({0.5f, 0.5f, 0.5f}));
   EXPECT_FALSE(grid.Occupied({0.1f, 0.5f, 0.5f}));
   // The ball and the cells that it touches: between its volume and that of a ball a cell larger.
@@ -44,7 +44,7 @@ TEST(OccupancyGrid, FindsMatterThatAppearsLater) {
     return std::vector<float>(p.size() / 3, 0.0f);
   };
   for (int step = 0; step < 20; ++step) grid.Update(step, 7, nothing);
-  for (int step = 20; step < 80; ++step) grid.Update(step, 7, Ball);
+  for (int step = 20; step < 80; ++step) grid.Update(step, 7, DensityOfABall);
   EXPECT_TRUE(grid.Occupied({0.5f, 0.5f, 0.5f}));
 }
 
@@ -69,7 +69,7 @@ TEST(OccupancyGrid, OutsideTheCubeThereIsNothing) {
 
 TEST(OccupancyGrid, ComesBackFromItsDensities) {
   OccupancyGrid grid(Options(), 0.01f), copy(Options(), 0.01f);
-  for (int step = 0; step < 30; ++step) grid.Update(step, 7, Ball);
+  for (int step = 0; step < 30; ++step) grid.Update(step, 7, DensityOfABall);
   copy.Density() = grid.Density();
   copy.Refresh();
   EXPECT_EQ(copy.OccupiedFraction(), grid.OccupiedFraction());

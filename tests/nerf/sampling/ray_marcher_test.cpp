@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <numeric>
 
-#include "nerf/parallel.h"
+#include "nerf/base/parallel.h"
+#include "nerf/base/random.h"
 #include "nerf/sampling/contraction.h"
-#include "nerf/sampling/random.h"
 
 namespace nerf {
 namespace {

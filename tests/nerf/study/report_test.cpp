@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nerf/data/image_io.h"
+#include "nerf/image/image_io.h"
 #include "tests/support/scratch_folder.h"
 
 namespace nerf {

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "nerf/config.h"
+#include "nerf/config/config.h"
 
 namespace nerf {
 namespace {

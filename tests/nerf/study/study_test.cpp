@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nerf/sample/sample_folder.h"
-#include "nerf/train/run_folder.h"
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/synthetic/sample_folder.h"
 #include "sfm/transforms_json.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 using test::never_stop;
 
-sfm::PosedImages SmallSample(const test::ScratchFolder& folder, int views) {
+PosedImages SmallSample(const test::ScratchFolder& folder, int views) {
   sample::SampleOptions options;
   options.views = views;
   options.width = 32;
@@ -31,11 +31,11 @@ sfm::PosedImages SmallSample(const test::ScratchFolder& folder, int views) {
 // With nothing left of the budget every setting still gets its second.
 TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   const test::ScratchFolder folder;
-  const sfm::PosedImages posed = SmallSample(folder, 10);
+  const PosedImages posed = SmallSample(folder, 10);
   StudyOptions options;
   options.budget = 1;
   const auto out = folder.path() / "study";
-  sfm::MakeOutputFolder(out);
+  MakeOutputFolder(out);
 
   std::atomic<bool> stop = false;
   Study first(posed, options, out);
@@ -53,7 +53,7 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   EXPECT_TRUE(again.Run(never_stop, note));
   EXPECT_EQ(begun[3], 2u);
 
-  const auto json = nlohmann::json::parse(sfm::ReadWholeFile(out / "study.json"));
+  const auto json = nlohmann::json::parse(ReadWholeFile(out / "study.json"));
   ASSERT_EQ(json["settings"].size(), again.Settings());
   int on_front = 0;
   double before = 0;

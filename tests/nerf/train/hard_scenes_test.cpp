@@ -7,15 +7,15 @@
 #include <limits>
 #include <string>
 
-#include "nerf/data/image_metrics.h"
-#include "nerf/parallel.h"
+#include "nerf/base/parallel.h"
+#include "nerf/image/image_metrics.h"
+#include "nerf/model/checkpoint.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/render/engine.h"
 #include "nerf/render/image_renderer.h"
-#include "nerf/train/checkpoint.h"
-#include "nerf/train/engine.h"
-#include "nerf/train/non_finite_error.h"
-#include "nerf/train/run_folder.h"
+#include "nerf/render/non_finite_error.h"
+#include "nerf/scene/scene_normalization.h"
 #include "nerf/train/trainer.h"
-#include "sfm/scene_normalization.h"
 #include "tests/support/analytic_capture.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/small_capture.h"
@@ -159,13 +159,13 @@ TEST(HardScene, OnePhotographOfOnePixelTrains) {
 TEST(HardScene, AMillimetreAndTenKilometresTrainAlike) {
   const auto psnr_at = [](double scale) {
     test::SmallCapture small = test::MakeSmallCapture(24, 32, 24);
-    for (sfm::PosedImage& image : small.capture.posed.images) {
+    for (PosedImage& image : small.capture.posed.images) {
       image.world_from_camera.translation() *= scale;
     }
-    small.scene.normalized_from_world = sfm::NormalizeScene(small.capture.posed);
+    small.scene.normalized_from_world = NormalizeScene(small.capture.posed);
     std::size_t of_train = 0;
-    for (const sfm::PosedImage& image : small.capture.posed.images) {
-      if (image.split != sfm::Split::kTrain) continue;
+    for (const PosedImage& image : small.capture.posed.images) {
+      if (image.split != Split::kTrain) continue;
       small.data.train[of_train++].normalized_from_camera =
           small.scene.normalized_from_world.NormalizedFromCamera(image.world_from_camera);
     }
@@ -218,7 +218,8 @@ TEST(HardScene, AHundredThousandRecklessStepsEndWithAReasonAtWorst) {
 // A photograph that holds what is no number, past every reader that would have refused it.
 TEST(HardScene, AValueThatIsNoNumberNamesStepRayAndStageAndKeepsTheLastCheckpoint) {
   AnalyticCapture capture(CameraRing(8, 1.5, 0.8), 16, 16, StripedBall);
-  const Config config = test::TinyConfig(400, {"train.checkpoint_every=1", "train.max_rays_per_batch=8"});
+  const Config config =
+      test::TinyConfig(400, {"train.checkpoint_every=1", "train.max_rays_per_batch=8"});
   capture.data.train[1].rgba[4 * 70] = std::numeric_limits<Eigen::half>::quiet_NaN();
   const test::ScratchFolder run;
   Trainer trainer(config, capture.scene, capture.data, run.path());

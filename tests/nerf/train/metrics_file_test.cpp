@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
 #include "tests/support/scratch_folder.h"
 
 namespace nerf {
@@ -24,7 +24,7 @@ TEST(MetricsFile, KeepsWhatStandsBeforeTheCheckpointAndItsCurve) {
   EXPECT_EQ(metrics.Curve().Last(), 21);
   metrics.Append({{"step", 150}, {"seconds", 2.5}, {"validation_psnr", 23.0}});
   EXPECT_EQ(metrics.Curve().Last(), 23);
-  const std::string text = sfm::ReadWholeFile(path);
+  const std::string text = ReadWholeFile(path);
   EXPECT_EQ(std::ranges::count(text, '\n'), 3);
   EXPECT_EQ(text.find("22.0"), std::string::npos);
 }

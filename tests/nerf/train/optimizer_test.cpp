@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <torch/optim/adam.h>
 
-#include "nerf/train/non_finite_error.h"
+#include "nerf/render/non_finite_error.h"
 
 namespace nerf {
 namespace {

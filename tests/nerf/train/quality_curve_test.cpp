@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "sfm/atomic_file.h"
+#include "nerf/base/atomic_file.h"
 
 namespace nerf {
 namespace {
@@ -16,7 +16,7 @@ using Recorded = std::vector<std::pair<double, double>>;  // seconds, PSNR
 
 // Runs of the three presets on the fox, the chair and the built-in sample (scripts/bench --runs).
 std::vector<Recorded> RecordedCurves() {
-  const auto json = nlohmann::json::parse(sfm::ReadWholeFile(NERF_RECORDED_CURVES));
+  const auto json = nlohmann::json::parse(ReadWholeFile(NERF_RECORDED_CURVES));
   std::vector<Recorded> curves;
   for (const auto& curve : json) curves.push_back(curve.get<Recorded>());
   return curves;

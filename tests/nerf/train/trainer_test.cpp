@@ -5,12 +5,12 @@
 #include <fstream>
 #include <thread>
 
-#include "nerf/data/image_metrics.h"
-#include "nerf/parallel.h"
+#include "nerf/base/parallel.h"
+#include "nerf/image/image_metrics.h"
+#include "nerf/model/checkpoint.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/render/engine.h"
 #include "nerf/render/image_renderer.h"
-#include "nerf/train/checkpoint.h"
-#include "nerf/train/engine.h"
-#include "nerf/train/run_folder.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/small_capture.h"
 #include "tests/support/tiny_training.h"
@@ -148,11 +148,11 @@ TEST(Trainer, LearnsAViewThatItNeverSaw) {
   const TrainSummary summary = trainer.Run(never_stop);
   EXPECT_TRUE(summary.finished);
 
-  const sfm::PosedImages& posed = small.capture.posed;
+  const PosedImages& posed = small.capture.posed;
   double psnr = 0;
   int views = 0;
   for (std::size_t i = 0; i < posed.images.size(); ++i) {
-    if (posed.images[i].split != sfm::Split::kTest) continue;
+    if (posed.images[i].split != Split::kTest) continue;
     const RenderedView view = RenderView(
         *trainer.GetModel().engine, posed.cameras[posed.images[i].camera],
         small.scene.normalized_from_world.NormalizedFromCamera(posed.images[i].world_from_camera),

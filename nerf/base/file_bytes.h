@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace nerf {
+
+// Everything in a regular file, for files that nobody vouches for: never waits on a pipe, and
+// memory is bounded by the size of the file. Throws InputError naming the file when it is missing,
+// not a regular file, or unreadable.
+std::string ReadFileBytes(const std::filesystem::path& file);
+
+}  // namespace nerf

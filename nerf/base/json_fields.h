@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace nerf {
+
+// Parses a JSON file. Python writes NaN and Infinity, which JSON does not know: they are read as
+// null, so that the message about them can name the key. Throws InputError naming the file, line
+// and column.
+nlohmann::json ReadJsonFile(const std::filesystem::path& file);
+
+// Looks keys up in one object of a JSON file. Every getter throws InputError with file, place and
+// key when the value has another type; numbers must be finite.
+class JsonFields {
+ public:
+  // prefix: what the messages put before a key: "transforms.json: ", "transforms.json: frames[3]."
+  // Keeps a reference to `object`. Throws InputError when it is not an object.
+  JsonFields(const nlohmann::json& object, std::string prefix);
+
+  bool Has(std::string_view key) const { return object_.contains(key); }
+  std::optional<double> Number(std::string_view key) const;
+  std::optional<bool> Bool(std::string_view key) const;
+  std::optional<std::string> String(std::string_view key) const;
+  // nullptr where the key is absent.
+  const nlohmann::json* Array(std::string_view key) const;
+
+  // "transforms.json: frames[3].fl_x"
+  std::string Where(std::string_view key) const;
+
+ private:
+  const nlohmann::json* Find(std::string_view key) const;
+
+  const nlohmann::json& object_;
+  std::string prefix_;
+};
+
+}  // namespace nerf

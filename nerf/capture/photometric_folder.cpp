@@ -1,0 +1,64 @@
+#include "nerf/capture/photometric_folder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "nerf/base/atomic_file.h"
+#include "nerf/capture/normal_integration.h"
+#include "nerf/geometry/height_mesh.h"
+#include "nerf/image/image_io.h"
+#include "nerf/output/color_map.h"
+
+namespace nerf::appearance {
+namespace {
+
+constexpr double kCutOff = 0.98;         // share of the albedos that a picture shows unclamped
+constexpr float kWhiteResidual = 0.10f;  // relative to the albedo
+
+// So that albedos of any unit fill the picture's range.
+float ScaleToLookAt(const Image& albedo) {
+  std::vector<float> values;
+  std::ranges::copy_if(albedo.pixels, std::back_inserter(values), [](float v) { return v > 0; });
+  if (values.empty()) return 1;
+  const auto rank = static_cast<std::ptrdiff_t>(kCutOff * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + rank);
+  return 1 / values[static_cast<std::size_t>(rank)];
+}
+
+Image Scaled(Image image, float factor) {
+  for (float& value : image.pixels) value *= factor;
+  return image;
+}
+
+Image ResidualToLookAt(const Image& residual) {
+  Image picture(residual.width, residual.height, 3, ColorEncoding::kSrgb);
+  for (std::size_t i = 0; i < residual.pixels.size(); ++i) {
+    const Eigen::Vector3f color = Heat(residual.pixels[i] / kWhiteResidual);
+    std::copy_n(color.data(), 3, &picture.pixels[i * 3]);
+  }
+  return picture;
+}
+
+}  // namespace
+
+void WritePhotometricFolder(const std::filesystem::path& folder, const PhotometricMaps& maps) {
+  MakeOutputFolder(folder);
+  const float scale = ScaleToLookAt(maps.albedo);
+  const DirectionalLight upper_left{Eigen::Vector3d(-0.6, 0.5, 0.62).normalized()};
+  WriteImage(folder / "normals.exr", maps.normal);
+  WriteImage(folder / "normals.png", NormalsToLookAt(maps.normal));
+  WriteImage(folder / "albedo.exr", maps.albedo);
+  WriteImage(folder / "albedo.png", Scaled(maps.albedo, scale));
+  WriteImage(folder / "residual.exr", maps.residual);
+  WriteImage(folder / "residual.png", ResidualToLookAt(maps.residual));
+  WriteImage(folder / "relit.png", Scaled(RelitByNormals(maps, upper_left), scale));
+  // A mesh of very many pixels is made of blocks of them.
+  const double share = static_cast<double>(maps.pixels) / kMostPixels;
+  const int block = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
+  WriteHeightMesh(folder / "depth.ply", IntegrateNormals(Downscale(maps.normal, block)),
+                  Downscale(Scaled(maps.albedo, scale), block));
+}
+
+}  // namespace nerf::appearance

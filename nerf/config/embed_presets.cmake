@@ -1,0 +1,11 @@
+# Writes OUTPUT: a C++ file with the text of each JSON file in FILES, by its name without ending.
+set(text "// Made from configs/*.json by embed_presets.cmake.\n#include \"nerf/config/config.h\"\n\n")
+string(APPEND text "namespace nerf {\n\nconst std::map<std::string, std::string>& BuiltInPresets() {\n")
+string(APPEND text "  static const std::map<std::string, std::string> presets = {\n")
+foreach(file ${FILES})
+  get_filename_component(name ${file} NAME_WE)
+  file(READ ${file} json)
+  string(APPEND text "      {\"${name}\", R\"json(${json})json\"},\n")
+endforeach()
+string(APPEND text "  };\n  return presets;\n}\n\n}  // namespace nerf\n")
+file(WRITE ${OUTPUT} "${text}")

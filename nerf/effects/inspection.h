@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "nerf/inspect/angle_residuals.h"
+#include "nerf/inspect/verdict.h"
+#include "nerf/scene/posed_images.h"
+#include "nerf/scene/scene_normalization.h"
+
+namespace nerf {
+
+// What a capture calls for, found from what is there before anything is trained.
+struct Inspection {
+  std::vector<Verdict> verdicts;
+  // Exposure of each photograph against the mean: as the sparse points show it, else as EXIF tells
+  // of it; empty: unknown.
+  std::vector<double> stops;
+  std::vector<AngleResiduals> residuals;  // empty: no sparse points
+  // NormalizeScene; where alpha bounds the scene, so that its ball is the unit ball.
+  SceneNormalization normalized_from_world;
+  std::string warning;  // about the input, one line; or empty
+};
+
+// Looks at the photographs, and at the sparse points where structure from motion has left some:
+// the colours of each point over the photographs that see it. Without points, EXIF may tell of the
+// exposures.
+//   read     called with the number of photographs read
+//   learned  whether a background may be learned; else contracted space must hold what is far
+// Throws InputError naming a mask that is broken.
+Inspection Inspect(const PosedImages& posed, const std::function<void(int)>& read = {},
+                   bool learned = true);
+
+// What photographs alone tell, before their poses are known: alpha, linear radiance, masks, EXIF.
+//   photographs  without poses and cameras
+// Throws InputError naming a mask that is broken.
+Inspection InspectPhotographs(const PosedImages& photographs);
+
+}  // namespace nerf

@@ -1,0 +1,36 @@
+#include "nerf/model/run_folder.h"
+
+#include "nerf/base/input_error.h"
+#include "nerf/model/checkpoint.h"
+#include "nerf/model/refined_poses.h"
+#include "sfm/transforms_json.h"
+
+namespace nerf {
+
+namespace fs = std::filesystem;
+
+fs::path CheckpointPath(const fs::path& run) { return run / "checkpoint.nerf"; }
+fs::path PosesPath(const fs::path& run) { return run / "transforms.json"; }
+fs::path RefinedPosesPath(const fs::path& run) { return run / "refined_transforms.json"; }
+fs::path ConfigPath(const fs::path& run) { return run / "config.json"; }
+fs::path MetricsPath(const fs::path& run) { return run / "metrics.jsonl"; }
+fs::path ColmapPath(const fs::path& run) { return run / "colmap"; }
+fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
+
+Checkpoint ReadRunCheckpoint(const fs::path& run) {
+  if (!fs::exists(CheckpointPath(run))) {
+    throw InputError("{}: holds no checkpoint.nerf; train first: nerf train INPUT -o {}",
+                     run.string(), run.string());
+  }
+  return ReadCheckpoint(CheckpointPath(run));
+}
+
+OpenedRun OpenRun(const fs::path& run) {
+  const Checkpoint checkpoint = ReadRunCheckpoint(run);
+  Model model = ModelFromCheckpoint(checkpoint);
+  const PosedImages posed = sfm::ReadTransformsJson(PosesPath(run), sfm::AbsentImages::kKeep);
+  return {model, RefinedPoses(model, posed), checkpoint.meta.value("step", std::int64_t{0}),
+          checkpoint.meta.value("training_seconds", 0.0)};
+}
+
+}  // namespace nerf

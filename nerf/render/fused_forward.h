@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "nerf/base/stopwatch.h"
+#include "nerf/kernels/volume_rendering.h"
+#include "nerf/render/engine.h"
+#include "nerf/render/field_tile.h"
+#include "nerf/render/proposal_tile.h"
+
+namespace nerf {
+
+// The rays of a tile on their way, and what the way back needs.
+struct FusedTile {
+  ProposalTile proposal;
+  RaySamples samples;
+  std::vector<std::int64_t> ray_begin;  // [R+1]
+  std::vector<std::int64_t> ray;        // [S] of the batch
+  std::vector<std::int64_t> kept_of_ray, kept;
+  FieldTile field;
+  std::vector<float> rgb, opacity, depth;  // [R,3], [R], [R]
+  std::int64_t placed = 0, shaded = 0;     // samples so far
+  double sampling_seconds = 0;             // so far
+
+  // Of a tile that has taken `all` seconds so far.
+  StageSeconds Seconds(double all) const {
+    StageSeconds seconds = field.density.seconds;
+    seconds.sampling = sampling_seconds;
+    seconds.SetAll(all);
+    return seconds;
+  }
+  std::int64_t Rays() const { return static_cast<std::int64_t>(ray_begin.size()) - 1; }
+  kernels::RaySegments<float> Segments(const RayBatch& rays, std::int64_t first) const {
+    return {ray_begin,      field.density.sigma,
+            samples.dt,     samples.t,
+            field.radiance, std::span(rays.background).subspan(3 * first, 3 * Rays())};
+  }
+};
+
+// The way of a tile of rays from their origins to their pixels.
+class FusedForward {
+ public:
+  explicit FusedForward(const EngineParts& parts);
+
+  // Takes over the parameters, which others change between batches.
+  void Refresh();
+
+  // The rays from `first` on, as many as fill a tile. Returns the first ray that is not in it.
+  std::int64_t Run(const RayBatch& rays, std::int64_t first, std::int64_t last,
+                   FusedTile& tile) const;
+
+  TileField& Field() { return field_; }
+  const TileField& Field() const { return field_; }
+  std::optional<TileProposal>& Proposal() { return proposal_; }
+  const std::optional<TileProposal>& Proposal() const { return proposal_; }
+
+ private:
+  std::int64_t PlaceSamples(const RayBatch& rays, std::int64_t first, std::int64_t last,
+                            FusedTile& tile) const;
+  void KeepVisible(FusedTile& tile) const;
+
+  std::shared_ptr<OccupancyGrid> grid_;
+  MarchOptions march_;
+  std::optional<FootprintOptions> footprint_;
+  TileField field_;
+  std::optional<TileProposal> proposal_;
+};
+
+// Names the first ray of a tile whose colour is not finite, and the stage that spoilt it.
+//   target  [R,3] of the tile, whose first ray is `first` of the batch
+std::string DescribeNonFinite(const FusedTile& tile, std::span<const float> target,
+                              std::int64_t first);
+
+}  // namespace nerf

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace nerf {
+
+// The samples of a batch of rays, packed ray after ray.
+struct PackedSamples {
+  std::vector<std::int64_t> ray_begin;  // [R+1] first sample of each ray; the last entry is S
+  std::vector<std::int64_t> ray;        // [S] the ray of each sample
+  std::vector<float> position;          // [S,3] contracted, in the unit cube
+  std::vector<float> t;                 // [S] distance of the sample along its ray
+  std::vector<float> dt;                // [S] length of its interval
+
+  std::int64_t Rays() const { return static_cast<std::int64_t>(ray_begin.size()) - 1; }
+  std::int64_t Size() const { return static_cast<std::int64_t>(t.size()); }
+};
+
+// The samples for which `kept` says how many from the front of each ray are wanted.
+PackedSamples KeepFront(const PackedSamples& samples, const std::vector<std::int64_t>& kept);
+
+}  // namespace nerf

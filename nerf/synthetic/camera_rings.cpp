@@ -1,0 +1,106 @@
+#include "nerf/synthetic/camera_rings.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "nerf/scene/camera.h"
+#include "nerf/synthetic/hash.h"
+
+namespace nerf::sample {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kVerticalFov = 40 * kDegree;
+constexpr double kDistance = 3.0;                      // scene units
+const Vector3d kSubject(0, 0, 0.25);                   // what the cameras look at
+const std::vector<double> kElevations = {14, 34, 56};  // degrees
+
+// Hashes as a stream of numbers in [-1, 1).
+class Irregularity {
+ public:
+  explicit Irregularity(unsigned seed) : seed_(seed) {}
+  double Next() { return 2 * UnitFromHash(Hash(count_++, 0, 0, seed_)) - 1; }
+  Vector3d NextPoint() {
+    const double x = Next(), y = Next(), z = Next();
+    return {x, y, z};
+  }
+
+ private:
+  unsigned seed_;
+  int count_ = 0;
+};
+
+// Few views stay on one ring, where neighbours are still close to each other.
+std::vector<double> RingElevations(int views) {
+  if (views < 12) return {25};
+  if (views < 24) return {18, 42};
+  return kElevations;
+}
+
+// How many of the views stand on each ring: in proportion to its circumference.
+std::vector<int> ViewsOnRings(int views, const std::vector<double>& elevations) {
+  double total = 0;
+  for (const double elevation : elevations) total += std::cos(elevation * kDegree);
+  std::vector<int> counts;
+  double until_here = 0;
+  int given = 0;
+  for (const double elevation : elevations) {
+    until_here += std::cos(elevation * kDegree) / total;
+    const int until = static_cast<int>(std::lround(views * until_here));
+    counts.push_back(until - given);
+    given = until;
+  }
+  return counts;
+}
+
+// OpenCV axes: z looks at the target, x to the right, y down.
+//   roll  radians about the viewing direction
+Eigen::Isometry3d LookAt(const Vector3d& position, const Vector3d& target, double roll) {
+  const Vector3d forward = (target - position).normalized();
+  const Vector3d right = forward.cross(Vector3d::UnitZ()).normalized();
+  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
+  world_from_camera.linear().col(0) = right;
+  world_from_camera.linear().col(1) = forward.cross(right);
+  world_from_camera.linear().col(2) = forward;
+  world_from_camera.translation() = position;
+  return world_from_camera * Eigen::AngleAxisd(roll, Vector3d::UnitZ());
+}
+
+}  // namespace
+
+PosedImages CameraRings(const SampleOptions& options) {
+  options.Check();
+  PosedImages posed;
+  posed.cameras = {PinholeFromFov(options.width, options.height, kVerticalFov)};
+  Irregularity irregular(options.seed);
+  const std::vector<double> elevations = RingElevations(options.views);
+  const std::vector<int> counts = ViewsOnRings(options.views, elevations);
+  for (std::size_t ring = 0; ring < elevations.size(); ++ring) {
+    const double start = 137.5 * static_cast<double>(ring);  // no view straight above another
+    for (int i = 0; i < counts[ring]; ++i) {
+      const double azimuth = (start + 360.0 * i / counts[ring] + 2 * irregular.Next()) * kDegree;
+      const double elevation = (elevations[ring] + 2 * irregular.Next()) * kDegree;
+      const auto view = static_cast<int>(posed.images.size());
+      const double distance =
+          kDistance * DistanceFactor(options.occasion, view) * (1 + 0.05 * irregular.Next());
+      const Vector3d position =
+          distance * Vector3d(std::cos(azimuth) * std::cos(elevation),
+                              std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
+      const Vector3d target = kSubject + 0.08 * irregular.NextPoint();
+      PosedImage image;
+      image.name =
+          fmt::format("view_{:03}.{}", view, options.occasion == Occasion::kHdr ? "exr" : "png");
+      image.world_from_camera = LookAt(position, target, 3 * kDegree * irregular.Next());
+      posed.images.push_back(image);
+    }
+  }
+  return posed;
+}
+
+}  // namespace nerf::sample

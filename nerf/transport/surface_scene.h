@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "nerf/geometry/shapes.h"
+#include "nerf/light/environment_map.h"
+#include "nerf/light/lights.h"
+#include "nerf/material/brdf.h"
+#include "nerf/transport/subsurface.h"
+
+namespace nerf::appearance {
+
+// A surface and what it does with light. Boxes and discs have two sides that are alike.
+struct Surface {
+  sample::Shape shape;
+  std::shared_ptr<const Brdf> brdf = nullptr;  // none: reflects nothing
+  Color emission = Color::Zero();              // radiance, to all sides
+  // Light that enters a translucent sphere, the same as `shape`, and leaves it elsewhere; none:
+  // no light does. Its boundary mirrors nothing unless there is a brdf for that.
+  std::shared_ptr<const SubsurfaceSphere> subsurface = nullptr;
+};
+
+// A scene of analytic surfaces in the light.
+struct SurfaceScene {
+  std::vector<Surface> surfaces;
+  std::vector<DirectionalLight> directional_lights;
+  std::vector<PointLight> point_lights;
+  std::shared_ptr<const EnvironmentMap> environment;  // nullptr: darkness
+};
+
+// A point of a surface that a ray meets.
+struct SurfaceHit {
+  Eigen::Vector3d x_in_world;
+  Eigen::Vector3d normal_in_world;  // unit, on the side the ray comes from
+  const Surface* surface = nullptr;
+};
+
+// The first surface along a ray; nullopt where there is none.
+std::optional<SurfaceHit> FirstHit(const SurfaceScene& scene, const sample::Ray& ray);
+
+// Whether any surface stands within a distance along a ray.
+bool IsBlocked(const SurfaceScene& scene, const sample::Ray& ray, double distance);
+
+}  // namespace nerf::appearance

@@ -1,0 +1,60 @@
+#include "nerf/base/temporary_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+
+#include "nerf/base/input_error.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TemporaryFileTest : public testing::Test {
+ protected:
+  TemporaryFileTest() { fs::create_directories(folder_); }
+  ~TemporaryFileTest() override { fs::remove_all(folder_); }
+  fs::path folder_ = fs::temp_directory_path() / ("nerf_temporary_" + std::to_string(::getpid()));
+};
+
+TEST_F(TemporaryFileTest, VanishesUnlessItIsKept) {
+  {
+    const TemporaryFile file(folder_ / "a.b.png");
+    EXPECT_EQ(file.path().extension(), ".png");
+    EXPECT_EQ(file.path().parent_path(), folder_);
+    std::ofstream(file.path()) << "half";
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(TemporaryFileTest, TakesThePlaceOfTheOldFileWhenKept) {
+  std::ofstream(folder_ / "a.txt") << "old";
+  {
+    TemporaryFile file(folder_ / "a.txt");
+    std::ofstream(file.path()) << "new";
+    file.Keep();
+  }
+  std::string text;
+  std::ifstream(folder_ / "a.txt") >> text;
+  EXPECT_EQ(text, "new");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(TemporaryFileTest, TwoWritersOfOneFileDoNotMeet) {
+  EXPECT_NE(TemporaryFile(folder_ / "a").path(), TemporaryFile(folder_ / "a").path());
+}
+
+TEST_F(TemporaryFileTest, NeedsItsFolder) {
+  EXPECT_THROW(TemporaryFile(folder_ / "none" / "a.txt"), InputError);
+}
+
+TEST_F(TemporaryFileTest, SaysSoWhereThereIsNothingToKeep) {
+  TemporaryFile file(folder_ / "a.txt");
+  EXPECT_THROW(file.Keep(), InputError);
+}
+
+}  // namespace
+}  // namespace nerf

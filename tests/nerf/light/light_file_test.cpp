@@ -1,0 +1,61 @@
+#include "nerf/light/light_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/support/input_error_of.h"
+#include "tests/support/scratch_folder.h"
+
+namespace nerf::appearance {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+TEST(LightFile, HasDirectionsOfAnyLengthWithOrWithoutIntensities) {
+  const test::ScratchFolder scratch;
+  const auto lights =
+      ReadLights(scratch.Write("lights.txt", "3\n0 0 2\n\n3 0 4 2 # bright\n0 1 0 1 2 3\n"));
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_TRUE(lights[0].to_light.isApprox(Eigen::Vector3d::UnitZ()));
+  EXPECT_NEAR(lights[0].irradiance.x(), std::numbers::pi, 1e-12);
+  EXPECT_TRUE(lights[1].to_light.isApprox(Eigen::Vector3d(0.6, 0, 0.8)));
+  EXPECT_NEAR(lights[1].irradiance.z(), 2 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(lights[2].irradiance.y(), 2 * std::numbers::pi, 1e-12);
+}
+
+TEST(LightFile, IsReadBackAsItWasWritten) {
+  const test::ScratchFolder scratch;
+  const std::vector<DirectionalLight> lights = {
+      {Eigen::Vector3d(1, 2, -3).normalized()},
+      {Eigen::Vector3d(-1, 0.1, 0.7).normalized(), Color(0.1, 2, 30)}};
+  WriteLights(scratch.path() / "lights.txt", lights);
+  const auto back = ReadLights(scratch.path() / "lights.txt");
+  ASSERT_EQ(back.size(), 2u);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_LT((back[i].to_light - lights[i].to_light).norm(), 1e-8);
+    EXPECT_TRUE(back[i].irradiance.isApprox(lights[i].irradiance, 1e-7));
+  }
+}
+
+TEST(LightFile, ThatIsWrongIsNamedWithItsLine) {
+  const test::ScratchFolder scratch;
+  const auto error = [&](const char* text) {
+    const auto file = scratch.Write("lights.txt", text);
+    const std::string message = test::InputErrorOf([&] { ReadLights(file); });
+    EXPECT_THAT(message, HasSubstr(file.string()));
+    return message;
+  };
+  EXPECT_THAT(error("0 0 1\n0 1\n"), AllOf(HasSubstr(":2"), HasSubstr("x y z")));
+  EXPECT_THAT(error("0 0 1\nleft 0 1\n"), HasSubstr(":2"));
+  EXPECT_THAT(error("0 0 nan\n"), HasSubstr(":1"));
+  EXPECT_THAT(error("0 0 0\n"), HasSubstr("direction"));
+  EXPECT_THAT(error("0 0 1 -1\n"), HasSubstr("above 0"));
+  EXPECT_THAT(error("3\n0 0 1\n1 0 1\n"), AllOf(HasSubstr("announces 3"), HasSubstr("2 follow")));
+  EXPECT_THAT(error("# none\n"), HasSubstr("no lights"));
+}
+
+}  // namespace
+}  // namespace nerf::appearance

@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include "nerf/render/losses.h"
+#include "tests/support/central_differences.h"
+#include "tests/support/two_engines.h"
+
+namespace nerf {
+namespace {
+
+TEST(RobustLoss, IsTheOrdinaryLossWhereErrorsAreSmall) {
+  const torch::Tensor target = torch::full({4, 3}, 0.5), predicted = target + 1e-3;
+  const double plain = ColorLoss(predicted, target, {}, {}).item<double>();
+  const double robust = ColorLoss(predicted, target, {}, RobustOptions()).item<double>();
+  EXPECT_NEAR(robust / plain, 1, 1e-3);
+}
+
+TEST(RobustLoss, ALargeErrorPullsLessThanASmallOne) {
+  const auto pull = [](double error) {
+    const torch::Tensor target = torch::zeros({1, 3}, torch::kDouble);
+    const torch::Tensor predicted = torch::full({1, 3}, error, torch::kDouble).requires_grad_(true);
+    ColorLoss(predicted, target, {}, RobustOptions()).backward();
+    return predicted.grad()[0][0].item<double>();
+  };
+  EXPECT_LT(pull(0.8), 0.1 * pull(0.05));
+  EXPECT_GT(pull(0.8), 0);
+}
+
+TEST(RobustLoss, IsTheOrdinaryLossAtTheBeginningOfATraining) {
+  const RobustOptions options;
+  EXPECT_NEAR(options.At(0).scale, 100 * options.scale, 1e-9);
+  EXPECT_NEAR(options.At(0.5).scale, options.scale, 1e-12);
+  EXPECT_NEAR(options.At(1).scale, options.scale, 1e-12);
+  const torch::Tensor target = torch::zeros({4, 3}), predicted = torch::full({4, 3}, 0.3);
+  const double plain = ColorLoss(predicted, target, {}, {}).item<double>();
+  EXPECT_NEAR(ColorLoss(predicted, target, {}, options.At(0)).item<double>() / plain, 1, 0.06);
+}
+
+TEST(RobustLoss, GradientsMatchCentralDifferences) {
+  const torch::Tensor target = torch::rand({6, 3}, torch::kDouble);
+  const torch::Tensor predicted =
+      torch::rand({6, 3}, torch::dtype(torch::kDouble)).requires_grad_(true);
+  for (const char* kind : {"huber", "mse"}) {
+    LossOptions loss;
+    loss.kind = kind;
+    test::ExpectGradientMatchesCentralDifferences(
+        [&] { return ColorLoss(predicted, target, loss, RobustOptions()); }, predicted, 1e-6, 1e-7);
+  }
+}
+
+TEST(RobustLoss, OfAnEndlessScaleChangesNoBit) {
+  test::TwoEngines off, endless;
+  endless.robust = RobustOptions{1e300};
+  off.Make(50);
+  endless.Make(50);
+  for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
+    const StepResult a = (off.*engine)->AccumulateGradients(off.batch);
+    const StepResult b = (endless.*engine)->AccumulateGradients(endless.batch);
+    EXPECT_EQ(a.loss, b.loss);
+    EXPECT_EQ(a.ray_error, b.ray_error);
+  }
+}
+
+TEST(RobustLoss, MeansTheSameInBothEngines) {
+  for (const char* kind : {"huber", "mse"}) {
+    test::TwoEngines e;
+    e.loss.kind = kind;
+    e.robust = RobustOptions();
+    e.Make(50);
+    for (const double progress : {0.0, 0.3, 1.0}) {
+      e.libtorch->SetProgress(progress);
+      e.fused->SetProgress(progress);
+      e.ExpectTheSame();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace nerf

@@ -1,0 +1,268 @@
+#include "nerf/synthetic/occasion.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "nerf/image/image_io.h"
+#include "nerf/scene/camera.h"
+#include "nerf/synthetic/camera_rings.h"
+#include "nerf/synthetic/capture.h"
+#include "nerf/synthetic/sample_folder.h"
+#include "nerf/synthetic/sparse_points.h"
+#include "sfm/colmap_model.h"
+#include "sfm/transforms_json.h"
+#include "tests/support/input_error_of.h"
+#include "tests/support/scratch_folder.h"
+
+namespace nerf::sample {
+namespace {
+
+SampleOptions Tiny(Occasion occasion) {
+  SampleOptions options;
+  options.occasion = occasion;
+  options.views = 9;
+  options.width = 48;
+  options.height = 36;
+  options.samples_per_pixel = 4;
+  return options;
+}
+
+TEST(Occasion, HasANameThatAPersonUses) {
+  EXPECT_EQ(OccasionFromName("exposure"), Occasion::kExposure);
+  EXPECT_THAT(test::InputErrorOf([] { OccasionFromName("rain"); }),
+              testing::AllOf(testing::HasSubstr("rain"), testing::HasSubstr("exposure")));
+}
+
+TEST(Occasion, OfNothingShowsMattThingsAndSomethingEverywhere) {
+  const Capture capture = MakeCapture(Tiny(Occasion::kNothing));
+  for (const Object& object : SceneOf(Occasion::kNothing).objects) {
+    EXPECT_TRUE(object.material.mirror.isZero());
+    EXPECT_TRUE(object.material.gloss.isZero());
+  }
+  for (const View& view : capture.views) {
+    for (const float depth : view.depth.pixels) EXPECT_GT(depth, 0);
+  }
+}
+
+TEST(Occasion, OfDepthHasFewPhotographs) {
+  EXPECT_LT(UsualViews(Occasion::kDepth), UsualViews(Occasion::kNothing) / 3);
+}
+
+TEST(Occasion, OfExposureChangesLightAndNothingElse) {
+  const SampleOptions plain = Tiny(Occasion::kNothing), drift = Tiny(Occasion::kExposure);
+  const Capture a = MakeCapture(plain), b = MakeCapture(drift);
+  for (std::size_t i = 0; i < a.views.size(); ++i) {
+    EXPECT_EQ(a.views[i].depth.pixels, b.views[i].depth.pixels);
+    const Color gain = PhotographyOf(Occasion::kExposure, static_cast<int>(i), drift.seed,
+                                     a.posed.images[i].world_from_camera)
+                           .gain;
+    const Image one = ToLinear(a.views[i].photo), other = ToLinear(b.views[i].photo);
+    for (std::size_t k = 0; k < one.pixels.size(); ++k) {
+      if (one.pixels[k] >= 1 || other.pixels[k] >= 1) continue;
+      ASSERT_NEAR(other.pixels[k], gain[static_cast<int>(k % 3)] * one.pixels[k], 1e-4);
+    }
+  }
+}
+
+TEST(Occasion, OfRobustLeavesEveryEighthPhotographToJudgeBy) {
+  const Capture plain = MakeCapture(Tiny(Occasion::kNothing));
+  const Capture passed = MakeCapture(Tiny(Occasion::kRobust));
+  int changed = 0;
+  for (std::size_t i = 0; i < plain.views.size(); ++i) {
+    const bool same = plain.views[i].photo.pixels == passed.views[i].photo.pixels;
+    if (i % 8 == 0) {
+      EXPECT_TRUE(same) << i;
+    }
+    if (!same) ++changed;
+    // What is true of the scene is true without them.
+    EXPECT_EQ(plain.views[i].depth.pixels, passed.views[i].depth.pixels);
+    EXPECT_FALSE(passed.views[i].mask);
+  }
+  EXPECT_GE(changed, 6);
+}
+
+TEST(Occasion, OfMasksHidesATwelfthOfEachPhotographBehindTwoOrThree) {
+  SampleOptions options = Tiny(Occasion::kMasks);
+  options.views = 36;
+  options.width = 160;
+  options.height = 120;
+  options.samples_per_pixel = 1;
+  const Capture capture = MakeCapture(options);
+  double hidden = 0, pixels = 0;
+  for (int i = 0; i < options.views; ++i) {
+    const auto people =
+        PhotographyOf(options.occasion, i, options.seed, capture.posed.images[i].world_from_camera)
+            .passers_by.size();
+    if (IsToJudgeBy(i)) {
+      EXPECT_EQ(people, 0u);
+      continue;
+    }
+    EXPECT_TRUE(people == 2 || people == 3) << people;
+    for (const float shown : capture.views[i].mask->pixels) hidden += shown == 0;
+    pixels += static_cast<double>(capture.views[i].mask->pixels.size());
+  }
+  EXPECT_GT(hidden / pixels, 0.07);
+  EXPECT_LT(hidden / pixels, 0.11);
+}
+
+TEST(Occasion, OfViewIsGlossyAndMirrorsNothing) {
+  int glossy = 0;
+  for (const Object& object : SceneOf(Occasion::kView).objects) {
+    EXPECT_TRUE(object.material.mirror.isZero());
+    glossy += !object.material.gloss.isZero();
+  }
+  EXPECT_GE(glossy, 5);
+}
+
+TEST(Occasion, OfMasksMarksEveryPixelInWhichSomebodyIs) {
+  const Capture plain = MakeCapture(Tiny(Occasion::kNothing));
+  const Capture masked = MakeCapture(Tiny(Occasion::kMasks));
+  int hidden = 0;
+  for (std::size_t i = 0; i < plain.views.size(); ++i) {
+    ASSERT_TRUE(masked.views[i].mask);
+    for (std::size_t p = 0; p < masked.views[i].mask->pixels.size(); ++p) {
+      if (masked.views[i].mask->pixels[p] == 0) {
+        ++hidden;
+        continue;
+      }
+      // Of their shadows nothing is said: what is left may be darker, and is no other colour.
+      for (std::size_t c = 0; c < 3; ++c) {
+        ASSERT_LE(masked.views[i].photo.pixels[3 * p + c],
+                  plain.views[i].photo.pixels[3 * p + c] + 1e-6);
+      }
+    }
+  }
+  EXPECT_GT(hidden, 100);
+}
+
+TEST(Occasion, OfFootprintIsNearAndFarInTurn) {
+  SampleOptions options = Tiny(Occasion::kFootprint);
+  options.views = 36;
+  options.samples_per_pixel = 1;
+  const Capture capture = MakeCapture(options);
+  int far = 0, far_to_judge_by = 0, to_judge_by = 0;
+  for (int i = 0; i < options.views; ++i) {
+    const double distance = capture.posed.images[i].world_from_camera.translation().norm();
+    EXPECT_NEAR(distance, distance > 6 ? 12 : 3, 0.06 * distance);
+    far += distance > 6;
+    to_judge_by += IsToJudgeBy(i);
+    far_to_judge_by += IsToJudgeBy(i) && distance > 6;
+  }
+  EXPECT_NEAR(far, options.views / 2, 2);
+  EXPECT_GE(far_to_judge_by, 2);
+  EXPECT_GE(to_judge_by - far_to_judge_by, 2);
+}
+
+TEST(Occasion, OfAlphaIsTransparentWhereNothingIsMet) {
+  const Capture capture = MakeCapture(Tiny(Occasion::kAlpha));
+  const Capture plain = MakeCapture(Tiny(Occasion::kNothing));
+  int clear = 0, opaque = 0, missed = 0;
+  for (std::size_t i = 0; i < capture.views.size(); ++i) {
+    const Image& photo = capture.views[i].photo;
+    ASSERT_EQ(photo.channels, 4);
+    for (std::size_t p = 0; p < capture.views[i].depth.pixels.size(); ++p) {
+      const float alpha = photo.pixels[4 * p + 3];
+      if (capture.views[i].depth.pixels[p] == 0) {
+        clear += alpha == 0;
+        missed += alpha == 1;
+      }
+      if (alpha < 1) continue;
+      // Where all of a pixel is the subject, it is the picture without alpha.
+      ++opaque;
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_NEAR(LinearFromSrgb(photo.pixels[4 * p + c]),
+                    LinearFromSrgb(plain.views[i].photo.pixels[3 * p + c]), 1e-3);
+      }
+    }
+  }
+  EXPECT_GT(clear, 100);
+  EXPECT_GT(opaque, 100);
+  EXPECT_LT(missed, clear / 100);  // at edges, where only a pixel's middle meets nothing
+}
+
+TEST(Occasion, OfHdrIsBrighterThanWhite) {
+  const Capture capture = MakeCapture(Tiny(Occasion::kHdr));
+  EXPECT_EQ(capture.views[0].photo.encoding, ColorEncoding::kLinear);
+  EXPECT_GT(*std::ranges::max_element(capture.views[0].photo.pixels), 2);
+}
+
+TEST(SparsePoints, AreSeenWhereTheirTracksSay) {
+  const SampleOptions options = Tiny(Occasion::kBuiltIn);
+  const Capture capture = MakeCapture(options);
+  const auto points = SparsePoints(SceneOf(options.occasion), capture.posed, options);
+  ASSERT_GT(points.size(), 500u);
+  for (const SparsePoint& point : points) {
+    EXPECT_GE(point.track.size(), 3u);
+    for (const TrackElement& seen : point.track) {
+      const auto x = static_cast<int>(seen.pixel.x()), y = static_cast<int>(seen.pixel.y());
+      EXPECT_TRUE(x >= 0 && y >= 0 && x < options.width && y < options.height);
+    }
+  }
+}
+
+// Who stands behind a point does not hide it.
+TEST(SparsePoints, AreSeenWhereverTheyAreNotMaskedOut) {
+  SampleOptions options = Tiny(Occasion::kMasks);
+  options.width = 160;
+  options.height = 120;
+  options.samples_per_pixel = 1;
+  const Capture capture = MakeCapture(options);
+  const PosedImages& posed = capture.posed;
+  const auto points = SparsePoints(SceneOf(options.occasion), posed, options);
+  int seen_unmasked = 0;
+  for (const SparsePoint& point : points) {
+    for (const TrackElement& seen : point.track) {
+      const auto pixel =
+          PixelFromPoint(posed.cameras[0],
+                         posed.images[seen.image].world_from_camera.inverse() * point.x_in_world);
+      const auto x = static_cast<int>(pixel->x()), y = static_cast<int>(pixel->y());
+      seen_unmasked += *capture.views[seen.image].mask->At(x, y) == 1;
+    }
+  }
+  std::size_t sightings = 0, unhindered = 0;
+  options.occasion = Occasion::kNothing;
+  for (const auto& point : points) sightings += point.track.size();
+  for (const auto& point : SparsePoints(SceneOf(options.occasion), posed, options)) {
+    unhindered += point.track.size();
+  }
+  // Nearly all are outside of the masks, which reach a pixel further, and few are lost.
+  EXPECT_GT(seen_unmasked, 0.98 * sightings);
+  EXPECT_GT(sightings, 0.85 * unhindered);
+}
+
+TEST(WriteSample, WithMasksWritesThemAndTakesThemAwayAgain) {
+  const test::ScratchFolder folder;
+  WriteSample(folder.path(), Tiny(Occasion::kMasks));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "masks" / "view_001.png"));
+  WriteSample(folder.path(), Tiny(Occasion::kHdr));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "masks"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "images" / "view_001.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "images" / "view_001.png"));
+}
+
+TEST(WriteSample, WithWrongPosesKeepsTheTrueOnesApart) {
+  const test::ScratchFolder folder;
+  const SampleOptions options = Tiny(Occasion::kPoses);
+  WriteSample(folder.path(), options);
+  const PosedImages truth = CameraRings(options);
+  const auto right = sfm::ReadTransformsJson(folder.path() / "truth" / "poses.json").images;
+  const auto wrong = sfm::ReadTransformsJson(folder.path() / "truth" / "transforms.json").images;
+  const auto sparse =
+      sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images").images;
+  ASSERT_EQ(right.size(), truth.images.size());
+  for (std::size_t i = 0; i < truth.images.size(); ++i) {
+    const Eigen::Isometry3d& pose = truth.images[i].world_from_camera;
+    EXPECT_TRUE(right[i].world_from_camera.isApprox(pose, 1e-12));
+    EXPECT_EQ(wrong[i].world_from_camera.isApprox(pose, 1e-12), IsToJudgeBy(static_cast<int>(i)));
+    EXPECT_TRUE(sparse[i].world_from_camera.isApprox(wrong[i].world_from_camera, 1e-9));
+  }
+  WriteSample(folder.path(), Tiny(Occasion::kNothing));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "truth" / "poses.json"));
+}
+
+}  // namespace
+}  // namespace nerf::sample

@@ -1,0 +1,105 @@
+#include "nerf/synthetic/wrong_poses.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "nerf/synthetic/camera_rings.h"
+#include "nerf/synthetic/occasion.h"
+#include "nerf/synthetic/sparse_points.h"
+
+namespace nerf::sample {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// Each camera's error, in units of the standard deviations that the header promises.
+double SquaredError(const Isometry3d& truth, const Isometry3d& wrong) {
+  const Vector3d shift = wrong.translation() - truth.translation();
+  const AngleAxisd turn(wrong.linear() * truth.linear().transpose());
+  return shift.squaredNorm() / (0.012 * 0.012) +
+         turn.angle() * turn.angle() / (0.4 * kDegree * 0.4 * kDegree);
+}
+
+class WrongPoses : public testing::Test {
+ protected:
+  const PosedImages truth_ = CameraRings({});
+  const PosedImages wrong_ = WithWrongPoses(truth_, 3);
+
+  // Of all cameras with wrong poses, after something was done to the wrong ones.
+  double Total(const std::function<Isometry3d(const Isometry3d&)>& change) const {
+    double total = 0;
+    for (int i = 0; i < static_cast<int>(truth_.images.size()); ++i) {
+      if (IsToJudgeBy(i)) continue;
+      total += SquaredError(truth_.images[i].world_from_camera,
+                            change(wrong_.images[i].world_from_camera));
+    }
+    return total;
+  }
+};
+
+TEST_F(WrongPoses, AreWrongByAsMuchAsIsSaidAndNotWhereTheyJudge) {
+  int wrong = 0;
+  for (int i = 0; i < static_cast<int>(truth_.images.size()); ++i) {
+    const bool same =
+        truth_.images[i].world_from_camera.isApprox(wrong_.images[i].world_from_camera, 1e-15);
+    EXPECT_EQ(same, IsToJudgeBy(i)) << i;
+    if (!same) ++wrong;
+  }
+  // Six errors a camera, less the seven numbers of a similarity.
+  const double expected = 6.0 * wrong - 7;
+  EXPECT_NEAR(Total([](const Isometry3d& pose) { return pose; }), expected,
+              4 * std::sqrt(2 * expected));
+}
+
+TEST_F(WrongPoses, WouldNotBeBetterIfAllWereMovedAsOne) {
+  const double as_it_is = Total([](const Isometry3d& pose) { return pose; });
+  for (const double step : {-1e-3, 1e-3}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3d along = Vector3d::Unit(axis);
+      EXPECT_GT(Total([&](Isometry3d pose) {
+                  pose.translation() += step * along;
+                  return pose;
+                }),
+                as_it_is);
+      EXPECT_GT(Total([&](const Isometry3d& pose) { return AngleAxisd(step, along) * pose; }),
+                as_it_is);
+    }
+    EXPECT_GT(Total([&](Isometry3d pose) {
+                pose.translation() *= 1 + step;
+                return pose;
+              }),
+              as_it_is);
+  }
+}
+
+TEST_F(WrongPoses, AreOthersWithAnotherSeedAndTheSameWithTheSame) {
+  const Isometry3d one = wrong_.images[1].world_from_camera;
+  EXPECT_TRUE(WithWrongPoses(truth_, 3).images[1].world_from_camera.isApprox(one, 0));
+  EXPECT_FALSE(WithWrongPoses(truth_, 4).images[1].world_from_camera.isApprox(one, 1e-6));
+}
+
+TEST_F(WrongPoses, ShowInTheReprojectionErrorsAndLeavePointsWhereTheyAre) {
+  PosedImages truth = truth_;
+  SampleOptions options;
+  options.occasion = Occasion::kPoses;
+  truth.points = SparsePoints(SceneOf(options.occasion), truth, options);
+  const PosedImages wrong = WithWrongPoses(truth, 3);
+  double before = 0, after = 0;
+  for (std::size_t p = 0; p < truth.points.size(); ++p) {
+    EXPECT_EQ(wrong.points[p].x_in_world, truth.points[p].x_in_world);
+    EXPECT_EQ(wrong.points[p].track[0].pixel, truth.points[p].track[0].pixel);
+    before += truth.points[p].reprojection_error;
+    after += wrong.points[p].reprojection_error;
+  }
+  EXPECT_GT(after, 4 * before);
+}
+
+}  // namespace
+}  // namespace nerf::sample
