@@ -2,31 +2,25 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "nerf/base/progress.h"
-#include "nerf/base/stopwatch.h"
 #include "nerf/commands/commands.h"
-#include "nerf/commands/eval_scores.h"
+#include "nerf/commands/evaluation_report.h"
 #include "nerf/commands/threads.h"
-#include "nerf/effects/exposure_fit.h"
+#include "nerf/commands/training_display.h"
 #include "nerf/image/image_io.h"
-#include "nerf/image/image_metrics.h"
 #include "nerf/model/run_folder.h"
-#include "nerf/model/view_renderer.h"
 #include "nerf/output/contact_sheet.h"
-#include "nerf/pipeline/effects_worth.h"
-#include "nerf/render/image_renderer.h"
-#include "nerf/scene/camera.h"
-#include "nerf/scene/dataset.h"
+#include "nerf/pipeline/effect_measurement.h"
+#include "nerf/pipeline/evaluation.h"
 
 namespace nerf {
 namespace {
@@ -45,7 +39,7 @@ struct EvalArguments {
   bool json = false;
 };
 
-// Of the contact sheet: whoever looks at pictures looks at no more, and memory stays bounded.
+// Of the contact sheet, so that memory stays bounded.
 constexpr std::size_t kMostRows = 50;
 
 Split SplitFromName(const std::string& name) {
@@ -53,115 +47,91 @@ Split SplitFromName(const std::string& name) {
   return name == "validation" ? Split::kValidation : Split::kTest;
 }
 
-// Nobody knows the exposure of a photograph that training never saw: it is fitted, one gain a
-// channel.
-void FitExposure(const Image& truth, const Eigen::Vector3f& background, RenderedView& view) {
-  const Image shown = view.rgb.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
-  const std::vector<float> through = SeenThrough(view.opacity.pixels, {background.data(), 3});
-  std::vector<float>& rgb = view.rgb.pixels;
-  ApplyGains(FitGains(rgb, shown.pixels, through, view.rgb.encoding), through, rgb);
+void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const fs::path& output) {
+  TrainingDisplay display;
+  std::optional<ProgressLine> progress;
+  const std::vector<EffectMeasurement> effects = MeasureEffects(
+      run, arguments.effects_steps, [&](const PipelineEvent& event) { display(event); },
+      [&](std::size_t done, std::size_t trainings, const EffectDescriptor& effect) {
+        if (!progress) progress.emplace("measuring", static_cast<std::int64_t>(trainings));
+        progress->Update(static_cast<std::int64_t>(done), effect.name);
+      });
+  progress.reset();
+  const nlohmann::json result = JsonFromMeasurements(effects, arguments.effects_steps);
+  WriteFileAtomically(output / "effects_worth.json", result.dump(2) + "\n");
+  if (arguments.json) {
+    fmt::print("{}\n", result.dump(2));
+  } else {
+    PrintMeasurements(effects, arguments.effects_steps);
+  }
 }
 
-// Where a mask says to ignore what a photograph shows, the rendering counts as right.
-//   whole    pixels that count; empty: all
-//   returns  the decibels by which the PSNR of the whole picture is better than that of those
-double Ignore(const std::vector<std::uint32_t>& whole, const Image& truth, Image& rendered) {
-  if (whole.empty()) return 0;
-  Image counted = rendered.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
-  for (const std::uint32_t pixel : whole) {
-    std::copy_n(&rendered.pixels[3 * pixel], 3, &counted.pixels[3 * pixel]);
+// Scores of the split's views; the contact sheet is written.
+Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
+                         const fs::path& output) {
+  const std::vector<const PosedImage*> images =
+      ImagesOf(run.posed, SplitFromName(arguments.split));
+  if (images.empty()) {
+    throw InputError("{}: the run has no {} images; choose another --split", arguments.run,
+                     arguments.split);
   }
-  rendered = std::move(counted);
-  const double all = static_cast<double>(truth.width) * truth.height;
-  return 10 * std::log10(all / static_cast<double>(whole.size()));
+  ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
+  std::vector<ContactSheetRow> rows;
+  std::int64_t done = 0;
+  const Evaluation evaluation = Evaluate(
+      *run.model, run.posed, images, {arguments.quality, arguments.fit_exposure, {}},
+      [&](const EvaluatedView& view) {
+        const std::string psnr = fmt::format("{:.2f} dB", view.score->psnr);
+        if (rows.size() < kMostRows) {
+          rows.push_back({view.image->name + "  " + psnr, *view.truth, *view.rendering});
+        }
+        progress.Update(++done, psnr);
+      });
+  progress.Finish();
+  for (const std::string& reason : evaluation.unreadable) spdlog::warn("{}; left out", reason);
+  if (!evaluation.unreadable.empty()) {
+    spdlog::warn("{} of {} images could not be read; the mean is of the others",
+                 evaluation.unreadable.size(), images.size());
+  }
+  if (evaluation.scores.empty()) {
+    throw InputError("{}: none of the {} images could be read", arguments.run, arguments.split);
+  }
+  WriteImage(output / "contact_sheet.png", ContactSheet(rows));
+  return evaluation;
 }
 
 void RunEval(const EvalArguments& arguments) {
   UseThreads(arguments.threads);
   const OpenedRun run = OpenRun(arguments.run);
-  const std::shared_ptr<RayRenderer> renderer = ViewRenderer(run.model, arguments.quality);
+  run.model->Renderer(arguments.quality);  // a quality out of range leaves no folder behind
   const fs::path output =
       arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
   MakeOutputFolder(output);
   if (arguments.effects) {
-    MeasureEffects(run, arguments.effects_steps, arguments.json, output);
+    EvaluateEffects(run, arguments, output);
     return;
   }
-
-  std::vector<const PosedImage*> images;
-  for (const auto& image : run.posed.images) {
-    if (image.split == SplitFromName(arguments.split)) images.push_back(&image);
-  }
-  if (images.empty()) {
-    throw InputError("{}: the run has no {} images; choose another --split", arguments.run,
-                     arguments.split);
-  }
-
-  const SceneFacts& scene = run.model.scene;
-  const int downscale = run.model.config.data.downscale;
-  const bool fit_exposure = arguments.fit_exposure || run.model.exposure;
-  ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
-  std::vector<Score> scores;
-  std::vector<ContactSheetRow> rows;
-  Cost cost;
-  for (const PosedImage* image : images) {
-    Image truth;
-    std::vector<std::uint32_t> whole;
-    LapTimer reading;
-    try {
-      Photograph photograph =
-          LoadPhotograph(run.posed, *image, {downscale, MeaningOf(run.model.config.effects.masks)});
-      truth = OnWhite(photograph.pixels);
-      whole = std::move(photograph.whole);
-    } catch (const InputError& error) {
-      spdlog::warn("{}; left out", error.what());
-      continue;
-    }
-    reading.Lap(cost.reading);
-    const Stopwatch watch;
-    RenderedView view =
-        RenderView(*renderer, Downscaled(run.posed.cameras[image->camera], downscale),
-                   scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
-                   DisplayBackground(scene.has_alpha), scene.encoding);
-    const double seconds = watch.Seconds();
-    cost.Add(view);
-    if (fit_exposure) FitExposure(truth, DisplayBackground(scene.has_alpha), view);
-    const double of_ignored = Ignore(whole, truth, view.rgb);
-    const double psnr = Psnr(truth, view.rgb) - of_ignored;
-    scores.push_back({image->name, psnr, Ssim(truth, view.rgb), seconds});
-    if (rows.size() < kMostRows) {
-      rows.push_back({fmt::format("{}  {:.2f} dB", image->name, psnr), truth, view.rgb});
-    }
-    progress.Update(static_cast<std::int64_t>(scores.size()), fmt::format("{:.2f} dB", psnr));
-  }
-  progress.Finish();
-  if (scores.size() < images.size()) {
-    spdlog::warn("{} of {} images could not be read; the mean is of the others",
-                 images.size() - scores.size(), images.size());
-  }
-  if (scores.empty()) {
-    throw InputError("{}: none of the {} images could be read", arguments.run, arguments.split);
-  }
-
-  nlohmann::json result = JsonFromScores(scores, cost);
+  const Evaluation evaluation = EvaluateViews(run, arguments, output);
+  nlohmann::json result = JsonFromEvaluation(evaluation);
   result.update({{"split", arguments.split},
-                 {"downscale", downscale},
+                 {"downscale", run.model->GetModel().config.data.downscale},
                  {"quality", arguments.quality},
-                 {"exposure_fitted", fit_exposure},
-                 {"step", run.step},
+                 {"exposure_fitted", evaluation.exposure_fitted},
+                 {"step", run.model->Step()},
                  {"training_seconds", run.training_seconds},
-                 {"left_out", images.size() - scores.size()}});
+                 {"left_out", evaluation.unreadable.size()}});
   // Names of files need not be UTF-8.
   const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
   WriteFileAtomically(output / "eval.json", text + "\n");
-  WriteImage(output / "contact_sheet.png", ContactSheet(rows));
   if (arguments.json) {
     fmt::print("{}\n", text);
-  } else {
-    PrintScores(scores, cost);
-    if (fit_exposure) fmt::print("each rendering at its photograph's exposure, fitted\n");
-    fmt::print("{}\n", (output / "contact_sheet.png").string());
+    return;
   }
+  PrintEvaluation(evaluation);
+  if (evaluation.exposure_fitted) {
+    fmt::print("each rendering at its photograph's exposure, fitted\n");
+  }
+  fmt::print("{}\n", (output / "contact_sheet.png").string());
 }
 
 }  // namespace
@@ -177,13 +147,13 @@ void AddEvalCommand(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--quality", arguments->quality,
-                   "0, fast, to 1, exact; what each costs stands in the README")
+                   "0 (fast) to 1 (exact); docs/rendering.md shows what each costs")
       ->capture_default_str();
   command->add_flag("--fit-exposure", arguments->fit_exposure,
                     "compare each rendering at its photograph's exposure, as runs that simulate "
                     "exposures always are, so that others can be compared with them");
   command->add_flag("--effects", arguments->effects,
-                    "instead: what each simulated effect is worth and costs, by short trainings");
+                    "instead: what each simulated effect gains and costs, by short trainings");
   command
       ->add_option("--effects-steps", arguments->effects_steps, "steps of each of those trainings")
       ->check(CLI::Range(10, 1000000))

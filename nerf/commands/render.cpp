@@ -18,9 +18,8 @@
 #include "nerf/effects/exposure_fit.h"
 #include "nerf/geometry/rays.h"
 #include "nerf/image/image_io.h"
-#include "nerf/model/dial.h"
+#include "nerf/model/quality_probe.h"
 #include "nerf/model/run_folder.h"
-#include "nerf/model/view_renderer.h"
 #include "nerf/output/color_map.h"
 #include "nerf/output/video.h"
 #include "nerf/render/image_renderer.h"
@@ -71,31 +70,28 @@ void Expose(const std::array<float, 3>& gains, const Eigen::Vector3f& background
   ApplyGains(gains, SeenThrough(view.opacity.pixels, {background.data(), 3}), view.rgb.pixels);
 }
 
-// Where the dial stands: as asked for, or where a frame takes no longer than asked for. Says what
-// it costs and loses, measured on the first of the views.
+// The quality that is asked for, or the best at which a frame takes no longer than asked for. Prints
+// what it costs and loses, measured on the first of the views.
 double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArguments& arguments) {
   if (!arguments.seconds_per_frame && arguments.quality == 1) return 1;
-  const Dial dial(
-      run.model, shot.camera,
-      run.model.scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera));
-  const DialPosition position = arguments.seconds_per_frame
-                                    ? dial.Choose(*arguments.seconds_per_frame)
-                                    : dial.Measure(arguments.quality);
-  const std::string loss = std::isinf(position.psnr)
+  const QualityProbe probe(*run.model, {shot.camera, shot.world_from_camera});
+  const MeasuredQuality measured = arguments.seconds_per_frame
+                                       ? probe.Choose(*arguments.seconds_per_frame)
+                                       : probe.Measure(arguments.quality);
+  const std::string loss = std::isinf(measured.psnr)
                                ? "the exact picture"
-                               : fmt::format("{:.1f} dB from the exact picture", position.psnr);
-  fmt::print("quality {:.2f}: about {} a frame, {}\n", position.quality,
-             FormatSeconds(position.seconds), loss);
+                               : fmt::format("{:.1f} dB from the exact picture", measured.psnr);
+  fmt::print("quality {:.2f}: about {} a frame, {}\n", measured.quality,
+             FormatSeconds(measured.seconds), loss);
   std::fflush(stdout);
-  if (position.seconds > arguments.seconds_per_frame.value_or(position.seconds)) {
+  if (measured.seconds > arguments.seconds_per_frame.value_or(measured.seconds)) {
     spdlog::warn("no quality is as fast as {} a frame; --downscale makes smaller pictures",
                  FormatSeconds(*arguments.seconds_per_frame));
   }
-  return position.quality;
+  return measured.quality;
 }
 
-void RunRender(const RenderArguments& arguments) {
-  UseThreads(arguments.threads);
+void CheckArguments(const RenderArguments& arguments) {
   if (arguments.shots.downscale && *arguments.shots.downscale < 1) {
     throw InputError("--downscale {}: use 1 or more", *arguments.shots.downscale);
   }
@@ -108,48 +104,42 @@ void RunRender(const RenderArguments& arguments) {
   if (arguments.fps && !(*arguments.fps > 0 && *arguments.fps <= 1000)) {
     throw InputError("--fps {}: use more than 0, at most 1000", *arguments.fps);
   }
-  const OpenedRun run = OpenRun(arguments.run);
-  const SceneFacts& scene = run.model.scene;
-  std::optional<std::array<float, 3>> gains;
-  if (!arguments.exposure_of.empty()) gains = GainsOf(run.model, arguments.exposure_of);
-  const ShotList list = ChooseShots(run, arguments.shots, arguments.run);
-  const fs::path output = arguments.output.empty()
-                              ? fs::path(arguments.run) / "renders" / list.folder
-                              : fs::path(arguments.output);
-  MakeOutputFolder(output);
-  for (const Shot& shot : list.shots) {
-    CheckCameraCentre(
-        scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera).translation(),
-        shot.name);
-  }
-  const std::shared_ptr<RayRenderer> renderer =
-      ViewRenderer(run.model, ChooseQuality(run, list.shots.front(), arguments));
+}
 
+// Each picture coarse first, then whole.
+void RenderShots(const OpenedRun& run, const ShotList& list, const RenderArguments& arguments,
+                 const fs::path& output) {
+  const SceneFacts& scene = run.model->Scene();
+  std::optional<std::array<float, 3>> gains;
+  if (!arguments.exposure_of.empty()) {
+    gains = GainsOf(run.model->GetModel(), arguments.exposure_of);
+  }
+  const double quality = ChooseQuality(run, list.shots.front(), arguments);
+  const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
   std::int64_t pixels = 0, done = 0;
   for (const Shot& shot : list.shots) {
     pixels += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
   }
   ProgressLine progress("rendering", pixels);
   for (const Shot& shot : list.shots) {
-    const Eigen::Isometry3d normalized_from_camera =
-        scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera);
-    const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
     for (const int factor : {8, 4}) {
       if (!arguments.preview) break;
       WriteImage(output / (shot.name + "." + arguments.format),
-                 RenderPreview(*renderer, shot.camera, factor, normalized_from_camera, background,
-                               scene.encoding));
+                 RenderPreview(
+                     *run.model->Renderer(quality), shot.camera, factor,
+                     scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
+                     background, scene.encoding));
     }
-    RenderedView view =
-        RenderView(*renderer, shot.camera, normalized_from_camera, background, scene.encoding,
-                   [&](std::int64_t of_this) { progress.Update(done + of_this, shot.name); });
+    RenderedView view = run.model->Render(
+        {shot.camera, shot.world_from_camera, quality,
+         [&](std::int64_t of_this) { progress.Update(done + of_this, shot.name); }});
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
     if (gains) Expose(*gains, background, view);
     WriteShot(view, scene, arguments, output / shot.name);
   }
-  progress.Finish();
-  fmt::print("{} views in {}\n", list.shots.size(), output.string());
+}
 
+void WriteFilm(const ShotList& list, const RenderArguments& arguments, const fs::path& output) {
   if (!list.frames_per_second || arguments.no_video) return;
   if (arguments.format != "png" || !FfmpegIsInstalled()) {
     fmt::print("no film: it needs --format png and the ffmpeg program\n");
@@ -159,6 +149,27 @@ void RunRender(const RenderArguments& arguments) {
   WriteVideo(output, static_cast<int>(list.shots.size()),
              arguments.fps.value_or(*list.frames_per_second), film);
   fmt::print("{}\n", film.string());
+}
+
+void RunRender(const RenderArguments& arguments) {
+  UseThreads(arguments.threads);
+  CheckArguments(arguments);
+  const OpenedRun run = OpenRun(arguments.run);
+  if (!arguments.exposure_of.empty()) GainsOf(run.model->GetModel(), arguments.exposure_of);
+  const ShotList list = ChooseShots(run, arguments.shots, arguments.run);
+  const fs::path output = arguments.output.empty()
+                              ? fs::path(arguments.run) / "renders" / list.folder
+                              : fs::path(arguments.output);
+  MakeOutputFolder(output);
+  for (const Shot& shot : list.shots) {
+    CheckCameraCentre(run.model->Scene()
+                          .normalized_from_world.NormalizedFromCamera(shot.world_from_camera)
+                          .translation(),
+                      shot.name);
+  }
+  RenderShots(run, list, arguments, output);
+  fmt::print("{} views in {}\n", list.shots.size(), output.string());
+  WriteFilm(list, arguments, output);
 }
 
 }  // namespace
@@ -193,7 +204,7 @@ void AddRenderCommand(CLI::App& app) {
   command->add_flag("--no-video", arguments->no_video, "make no MP4 of a path");
   auto* quality = command
                       ->add_option("--quality", arguments->quality,
-                                   "0, fast, to 1, exact; what each costs stands in the README")
+                                   "0, fast, to 1, exact; what each costs is in docs/rendering.md")
                       ->capture_default_str();
   command
       ->add_option("--seconds-per-frame", arguments->seconds_per_frame,

@@ -42,7 +42,7 @@ ShotList ShotsOfPath(const CameraPath& path, const std::string& folder, int down
 }  // namespace
 
 ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs::path& folder) {
-  const int trained = run.model.config.data.downscale;
+  const int trained = run.model->GetModel().config.data.downscale;
   const int downscale = options.downscale.value_or(trained);
   if (!options.image.empty()) {
     const auto found = std::ranges::find_if(run.posed.images, [&](const auto& image) {
@@ -61,7 +61,7 @@ ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs:
             "pose",
             {}};
   }
-  const auto& normalized_from_world = run.model.scene.normalized_from_world;
+  const auto& normalized_from_world = run.model->Scene().normalized_from_world;
   if (options.path == "orbit") {
     return ShotsOfPath(OrbitPath(run.posed, normalized_from_world, options.frames), "orbit",
                        downscale);

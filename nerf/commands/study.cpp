@@ -15,7 +15,8 @@
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/threads.h"
-#include "nerf/pipeline/training_input.h"
+#include "nerf/commands/training_display.h"
+#include "nerf/pipeline/prepared_scene.h"
 #include "nerf/study/report.h"
 #include "sfm/pose_input.h"
 
@@ -41,7 +42,7 @@ void PrintFront(const nlohmann::json& results) {
     if (setting.at("on_training_front")) by_seconds[setting.at("seconds")] = &setting;
   }
   for (const auto& [seconds, setting] : by_seconds) {
-    const auto& exact = setting->at("dial").at(0);
+    const auto& exact = setting->at("qualities").at(0);
     fmt::print("{:<18} {:>8.1f} {:>9.2f} {:>8.4f} {:>11.2f}\n",
                setting->at("name").get<std::string>(), seconds, exact.at("psnr").get<double>(),
                exact.at("ssim").get<double>(), exact.at("seconds_per_frame").get<double>());
@@ -60,9 +61,17 @@ void RunStudy(const StudyArguments& arguments) {
   sfm::FindInput(arguments.input);  // a wrong input must not leave an empty folder behind
   const fs::path folder = arguments.output;
   MakeOutputFolder(folder);
-  const PosedImages posed = FindPoses(arguments.input, folder, threads);
-  WarnOfMissing(posed);
-  Study study(posed, options, folder);
+  TrainingDisplay display;
+  const PipelineListener listener = [&](const PipelineEvent& event) { display(event); };
+  const Config config = LoadConfig("balanced", {});
+  PreparedScene scene = PrepareScene(arguments.input, folder, config.data, threads, listener);
+  InspectScene(config, {}, scene, listener);
+  listener(CaptureInspected{&scene.inspection, {}, scene.inspection_seconds});
+  // What each training reports is not shown.
+  const PipelineListener of_settings = [&](const PipelineEvent& event) {
+    if (!std::holds_alternative<TrainerEvent>(event)) display(event);
+  };
+  Study study(std::move(scene), options, folder, of_settings);
   fmt::print("{} settings in {} (poses not counted); Ctrl-C stops, the same command goes on\n",
              study.Settings(), FormatDuration(options.budget));
   const bool done = study.Run(StopOnInterrupt(),
@@ -72,7 +81,7 @@ void RunStudy(const StudyArguments& arguments) {
                                 std::fflush(stdout);
                               });
   if (!done) {
-    fmt::print("stopped; the settings that are done stand in {}\n", folder.string());
+    fmt::print("stopped; the settings that are done are in {}\n", folder.string());
     return;
   }
   const fs::path page = folder / "study.html";

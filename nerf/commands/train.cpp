@@ -1,14 +1,123 @@
+#include <spdlog/fmt/fmt.h>
+
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "nerf/base/input_error.h"
+#include "nerf/base/interrupt.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/threads.h"
-#include "nerf/pipeline/training_run.h"
+#include "nerf/commands/training_display.h"
+#include "nerf/pipeline/training_session.h"
 
 namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TrainArguments {
+  std::string input;
+  std::string output;
+  std::string preset = "balanced";
+  bool preset_is_given = false;
+  std::vector<std::string> assignments;
+  std::string effects = "auto";
+  std::optional<int> downscale;
+  std::optional<double> time_budget;  // seconds
+  std::optional<double> target_psnr;  // dB
+  int threads = 0;
+  bool resume = false;
+  bool help_config = false;
+};
+
+fs::path RunFolder(const TrainArguments& arguments) {
+  if (!arguments.output.empty()) return arguments.output;
+  if (arguments.input.empty()) {
+    throw InputError("nerf train: name an INPUT, or with --resume the run with -o RUN");
+  }
+  fs::path name = fs::absolute(arguments.input).lexically_normal();
+  if (!name.has_filename()) name = name.parent_path();  // a slash at the end
+  // photos/fox/transforms.json is the fox's.
+  if (name.extension() == ".json") name = name.parent_path();
+  return fs::path("runs") / name.filename();
+}
+
+// What --set and the flags beside it assign.
+std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
+  std::vector<std::string> assignments = arguments.assignments;
+  if (arguments.downscale) {
+    assignments.push_back(fmt::format("data.downscale={}", *arguments.downscale));
+  }
+  if (arguments.time_budget) {
+    assignments.push_back(fmt::format("train.time_budget={}", *arguments.time_budget));
+  }
+  if (arguments.target_psnr) {
+    assignments.push_back(fmt::format("train.target_psnr={}", *arguments.target_psnr));
+  }
+  return assignments;
+}
+
+TrainingRequest RequestOf(const TrainArguments& arguments, int threads) {
+  TrainingRequest request;
+  request.run = RunFolder(arguments);
+  request.threads = threads;
+  request.assignments = AssignmentsOf(arguments);
+  if (arguments.resume) {
+    if (!request.assignments.empty() || arguments.preset_is_given || arguments.effects != "auto") {
+      throw InputError(
+          "--resume goes on with the run's own configuration; omit --config, --set, --effects, "
+          "--downscale, --time-budget and --target-psnr");
+    }
+    return request;
+  }
+  if (arguments.input.empty()) throw InputError("nerf train: name an INPUT");
+  request.input = arguments.input;
+  request.preset = arguments.preset;
+  request.preset_is_given = arguments.preset_is_given;
+  request.effects = ParseEffects(arguments.effects);
+  return request;
+}
+
+// A table of all keys in Markdown, as docs/configuration.md holds it.
+void PrintConfigHelp() {
+  fmt::print("| key | default | unit | values | meaning |\n|---|---|---|---|---|\n");
+  for (const OptionHelp& option : ConfigHelp()) {
+    fmt::print("| `{}` | {} | {} | {} | {} |\n", option.key, option.value, option.unit, option.range,
+               option.help);
+  }
+}
+
+void RunTrain(const TrainArguments& arguments) {
+  if (arguments.help_config) {
+    PrintConfigHelp();
+    return;
+  }
+  const Stopwatch watch;
+  const int threads = UseThreads(arguments.threads);
+  const TrainingRequest request = RequestOf(arguments, threads);
+  TrainingDisplay display;
+  const PipelineListener listener = [&](const PipelineEvent& event) { display(event); };
+  std::unique_ptr<TrainingSession> session;
+  if (arguments.resume) {
+    session = TrainingSession::Resume(request, watch, listener);
+  } else {
+    session = std::make_unique<TrainingSession>(request, watch, listener);
+    session->PrepareCapture();
+    session->ReadPhotographs();
+    session->DecideEffects();
+    session->PlanTimeBudget();
+  }
+  display.SetGoal(session->GetConfig().train);
+  session->Train(StopOnInterrupt());
+}
+
+}  // namespace
 
 void AddTrainCommand(CLI::App& app) {
   auto* command = app.add_subcommand("train", "Trains a radiance field from photographs");
@@ -26,8 +135,8 @@ void AddTrainCommand(CLI::App& app) {
   command
       ->add_option(
           "--effects", arguments->effects,
-          "auto: as the capture calls for them; config: as configured; +exposure,-view: so, "
-          "and the others auto")
+          "auto: as the capture calls for them; config: as configured; "
+          "+exposure,-view_dependence: these on and off, the others auto")
       ->capture_default_str();
   command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
   command
@@ -39,22 +148,22 @@ void AddTrainCommand(CLI::App& app) {
                       "end when the validation photographs reach so many dB");
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--resume", arguments->resume, "go on with the run in -o");
+  command->add_flag("--help-config", arguments->help_config,
+                    "list every key of the configuration with its default, range and meaning");
   command->footer(
       "Ctrl-C saves and leaves; --resume goes on where the run stopped, bit for bit with the same\n"
       "number of threads. A time budget counts from the command's start, poses and reading with "
       "it;\n"
-      "runs with one end by the clock, and are not the same to the bit.\n"
+      "such runs end by the clock, and do not repeat bit for bit.\n"
       "Examples:\n"
       "  nerf train photos/fox -o runs/fox --downscale 4\n"
       "  nerf train photos/fox/transforms.json --config fast --set train.steps=2000\n"
       "  nerf train photos/fox/transforms.json --time-budget 2m --target-psnr 30\n"
-      "  nerf train photos/fox --effects +exposure,-view\n"
+      "  nerf train photos/fox --effects +exposure,-view_dependence\n"
       "  nerf train --resume -o runs/fox");
   command->callback([arguments, preset] {
-    const Stopwatch watch;
-    arguments->preset_given = preset->count() > 0;
-    const int threads = UseThreads(arguments->threads);
-    (arguments->resume ? ResumeRun : StartRun)(*arguments, threads, watch);
+    arguments->preset_is_given = preset->count() > 0;
+    RunTrain(*arguments);
   });
 }
 

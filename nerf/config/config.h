@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nerf/config/field_options.h"
+#include "nerf/config/options_json.h"
 #include "nerf/config/train_options.h"
 #include "nerf/effects/effects.h"
 #include "nerf/kernels/hash_encoding.h"
@@ -18,8 +19,8 @@
 
 namespace nerf {
 
-// The options of every module. configs/base.json holds each key with its default; the blocks there
-// have the names of the members here.
+// The options of every module, each declared beside its algorithm. configs/base.json holds each key
+// with its default; the blocks there have the names of the members here.
 struct Config {
   DataOptions data;
   kernels::HashGridOptions encoding;
@@ -33,6 +34,22 @@ struct Config {
   OptimizerOptions optimizer;
   ScheduleOptions schedule;
   TrainOptions train;
+
+  template <class Self, class Visitor>
+  static void Options(Self& c, Visitor&& option) {
+    option("data", c.data, "how photographs are read and split");
+    option("encoding", c.encoding, "hash encoding of the field");
+    option("field", c.field, "networks of the field");
+    option("occupancy", c.occupancy, "grid of what may hold matter");
+    option("march", c.march, "where samples may stand on a ray");
+    option("proposal", c.proposal, "the network that places samples");
+    option("loss", c.loss, "loss of colours");
+    option("effects", c.effects, "what is simulated beyond the field; null: off");
+    option("gradient_scaling", c.gradient_scaling, "gradients near cameras");
+    option("optimizer", c.optimizer, "Adam");
+    option("schedule", c.schedule, "learning rate over the training");
+    option("train", c.train, "length, batches, checkpoints");
+  }
 };
 
 // The texts of configs/*.json by preset name, compiled in.
@@ -45,13 +62,16 @@ const std::map<std::string, std::string>& BuiltInPresets();
 // out of range.
 Config LoadConfig(const std::string& preset, const std::vector<std::string>& assignments);
 
-// The effects that a person's own configuration decides: those that assignments name, and those
+// The effects that the user's own configuration decides: those that assignments name, and those
 // that a JSON file (or its parents) names.
 std::set<std::string> NamedEffects(const std::string& preset,
                                    const std::vector<std::string>& assignments);
 
-// The keys of all effects.
-std::vector<std::string> EffectNames();
+// The same configuration with one effect on or off; one that is on already keeps its options.
+Config WithEffect(Config config, const EffectDescriptor& effect, bool on);
+
+// Every key with its default, unit, range and help, in the order of declaration.
+std::vector<OptionHelp> ConfigHelp();
 
 // A configuration as JSON and back; reading is as strict as LoadConfig.
 //   where  names the file in errors

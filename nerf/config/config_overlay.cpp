@@ -1,8 +1,10 @@
 #include "nerf/config/config_overlay.h"
 
 #include <cstdint>
+#include <string_view>
 
 #include "nerf/base/input_error.h"
+#include "nerf/effects/effects.h"
 
 namespace nerf {
 
@@ -26,6 +28,13 @@ const char* KindName(const json& base) {
   return base.type_name();
 }
 
+constexpr std::string_view kEffectsBlock = "effects";
+
+std::string CurrentEffectName(const std::string& name) {
+  const EffectDescriptor* const effect = FindEffect(name);
+  return effect != nullptr ? effect->name : name;
+}
+
 std::string JoinKeys(const json& object) {
   std::string keys;
   for (const auto& [key, value] : object.items()) keys += (keys.empty() ? "" : ", ") + key;
@@ -43,7 +52,7 @@ void OverlayEffect(json& effect, const std::string& name, const json& change,
     return;
   }
   if (effect.is_null()) effect = effects.at(name);
-  Overlay(effect, change, where, "effects." + name, effects);
+  Overlay(effect, change, where, std::string(kEffectsBlock) + "." + name, effects);
 }
 
 // Writes `change` over `base`; each key must stand in `base` with the same kind of value.
@@ -53,13 +62,14 @@ void Overlay(json& base, const json& change, const std::string& where, const std
     throw InputError("{}: {} must be an object {{...}}", where,
                      prefix.empty() ? "the configuration" : prefix);
   }
-  for (const auto& [key, value] : change.items()) {
+  for (const auto& [given, value] : change.items()) {
+    const std::string key = prefix == kEffectsBlock ? CurrentEffectName(given) : given;
     const std::string full = prefix.empty() ? key : prefix + "." + key;
     if (!base.contains(key)) {
       throw InputError("{}: unknown key {}; known here are {}", where, full, JoinKeys(base));
     }
     json& old = base[key];
-    if (prefix == "effects") {
+    if (prefix == kEffectsBlock) {
       OverlayEffect(old, key, value, where, effects);
     } else if (old.is_object()) {
       Overlay(old, value, where, full, effects);
@@ -78,7 +88,7 @@ json ParseConfig(const std::string& text, const std::string& where) {
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
-    throw InputError("{}: is not valid JSON at byte {}; mend it there", where, error.byte);
+    throw InputError("{}: is not valid JSON at byte {}; fix it there", where, error.byte);
   } catch (const json::out_of_range& error) {
     throw InputError("{}: holds a number out of range: {}", where, error.what());
   }

@@ -15,7 +15,8 @@ nlohmann::json ParseConfig(const std::string& text, const std::string& where);
 nlohmann::json ParseAssignment(const std::string& assignment);
 
 // Writes `change` over `base`; each key must stand in `base` with the same kind of value. Below
-// "effects" null turns an effect off, and an object turns it on.
+// "effects" null turns an effect off, an object turns it on, and effects may be called by the names
+// that they had a version ago.
 //   where    names the file in errors
 //   effects  every effect's block with its defaults
 // Throws InputError naming the key.

@@ -1,25 +1,63 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <utility>
+
+#include "nerf/base/options.h"
+#include "nerf/kernels/mlp.h"
 
 namespace nerf {
 
-struct LossOptions {
-  std::string kind = "huber";  // "huber" or "mse"
-  double huber_delta = 0.1;    // errors above this count linearly; same unit as colours
-
-  void Check() const;
+enum class EngineKind { kFused, kLibTorch };
+template <>
+struct EnumNames<EngineKind> {
+  static constexpr std::pair<EngineKind, std::string_view> kNames[] = {
+      {EngineKind::kFused, "fused"}, {EngineKind::kLibTorch, "libtorch"}};
 };
 
+template <>
+struct EnumNames<kernels::Precision> {
+  static constexpr std::pair<kernels::Precision, std::string_view> kNames[] = {
+      {kernels::Precision::kFloat, "float"}, {kernels::Precision::kBfloat16, "bfloat16"}};
+};
+
+enum class LossKind { kHuber, kMse };
+template <>
+struct EnumNames<LossKind> {
+  static constexpr std::pair<LossKind, std::string_view> kNames[] = {{LossKind::kHuber, "huber"},
+                                                                     {LossKind::kMse, "mse"}};
+};
+
+// The loss of colours (nerf/render/losses.h).
+struct LossOptions {
+  LossKind kind = LossKind::kHuber;
+  double huber_delta = 0.1;
+
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("kind", o.kind, "loss of a colour channel: Huber or mean squared error");
+    option("huber_delta", o.huber_delta, "colour", Above(0), "errors above this count linearly");
+  }
+};
+
+// Adam (nerf/train/optimizer.h).
 struct OptimizerOptions {
-  double learning_rate = 1e-2;  // at its highest, see ScheduleOptions
+  double learning_rate = 1e-2;
   double beta1 = 0.9;
   double beta2 = 0.99;
   double epsilon = 1e-15;
-  double weight_decay = 1e-6;  // of the networks' weights, not of the hash table
+  double weight_decay = 1e-6;
 
-  void Check() const;
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("learning_rate", o.learning_rate, "", AboveUpTo(0, 1e6),
+           "at its highest; see the block schedule");
+    option("beta1", o.beta1, "", Between(0, 0.9999), "decay of the mean of gradients");
+    option("beta2", o.beta2, "", Between(0, 0.9999), "decay of the mean of squared gradients");
+    option("epsilon", o.epsilon, "", Above(0), "added to the root of the mean square");
+    option("weight_decay", o.weight_decay, "", AtLeast(0),
+           "of the networks' weights, not of the hash tables");
+  }
 };
 
 // A photograph alone could be painted on a pane of glass right before its camera: samples near the
@@ -27,41 +65,67 @@ struct OptimizerOptions {
 // a sample at distance t by min(1, (t / full_distance)^2) undoes that. Source: Philip and
 // Deschaintre 2023, "Floaters No More".
 struct GradientScalingOptions {
-  double full_distance = 2.0;  // normalized scene units; 0: no scaling
+  double full_distance = 2.0;
 
-  void Check() const;
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("full_distance", o.full_distance, "scene units", AtLeast(0),
+           "gradients of nearer samples are scaled by (t / full_distance)^2; 0: none are");
+  }
 };
 
 // The learning rate rises linearly, then falls along half a cosine to its final value.
 struct ScheduleOptions {
-  int warmup_steps = 50;       // steps of the rise
-  double final_factor = 0.01;  // last learning rate as a fraction of the highest
+  int warmup_steps = 50;
+  double final_factor = 0.01;
 
-  void Check() const;
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("warmup_steps", o.warmup_steps, "steps", AtLeast(0), "of the linear rise");
+    option("final_factor", o.final_factor, "", AboveUpTo(0, 1),
+           "last learning rate over the highest");
+  }
 };
+// The learning rate at a step over the configured one.
 //   progress  in [0, 1], of the whole run
 double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, double progress);
 
 struct TrainOptions {
-  std::string engine = "fused";  // or "libtorch", the definition that it is tested against
-  // Of the field's networks in the fused engine: "float", or "bfloat16" factors with float sums,
-  // which takes less time on processors with AVX512-BF16 and more on others.
-  std::string precision = "float";
+  EngineKind engine = EngineKind::kFused;
+  kernels::Precision precision = kernels::Precision::kFloat;
   std::int64_t steps = 5000;
-  // Seconds for the whole command, from reading photographs to the last checkpoint; the learning
-  // rate falls by the clock, and steps do not count. 0: steps decide.
   double time_budget = 0;
-  // Training ends early where the validation reaches so many dB. 0: it never does.
   double target_psnr = 0;
-  std::int64_t samples_per_batch = 32768;  // samples with gradients that a step aims at
+  std::int64_t samples_per_batch = 32768;
   std::int64_t max_rays_per_batch = 4096;
-  // Of a batch, drawn where the field is still wrong (ErrorMap); the others anywhere.
   double error_driven_share = 0.5;
   std::uint64_t seed = 1;
-  std::int64_t checkpoint_every = 500;  // steps
-  std::int64_t validate_every = 250;    // steps
+  std::int64_t checkpoint_every = 500;
+  std::int64_t validate_every = 250;
 
+  // What single ranges cannot say. Throws InputError.
   void Check() const;
+
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("engine", o.engine, "fused kernels, or LibTorch, the definition they are tested against");
+    option("precision", o.precision,
+           "factors of the field's matrix products in the fused engine; sums stay float");
+    option("steps", o.steps, "steps", AtLeast(1), "length of a run without a time budget");
+    option("time_budget", o.time_budget, "seconds", ZeroOr(Between(1, 30 * 24 * 3600)),
+           "of the whole command; the learning rate then falls by the clock; 0: steps decide");
+    option("target_psnr", o.target_psnr, "dB", Between(0, 100),
+           "training ends early where validation reaches it; 0: it never does");
+    option("samples_per_batch", o.samples_per_batch, "samples", Between(1, 1 << 24),
+           "with gradients, that a step aims at");
+    option("max_rays_per_batch", o.max_rays_per_batch, "rays", Between(1, 1 << 22),
+           "most rays of a step");
+    option("error_driven_share", o.error_driven_share, "of rays", Between(0, 1),
+           "drawn where the field is still wrong (ErrorMap); the others anywhere");
+    option("seed", o.seed, "", AtLeast(0), "of all random numbers");
+    option("checkpoint_every", o.checkpoint_every, "steps", AtLeast(1), "between checkpoints");
+    option("validate_every", o.validate_every, "steps", AtLeast(1), "between validations");
+  }
 };
 
 }  // namespace nerf

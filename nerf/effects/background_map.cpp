@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "nerf/base/input_error.h"
 #include "nerf/kernels/activations.h"
 
 namespace nerf {
@@ -14,11 +13,6 @@ namespace {
 constexpr float kExpLimit = 15.0f;
 
 }  // namespace
-
-void BackgroundOptions::Check() const {
-  if (resolution >= 2 && resolution <= 1024) return;
-  throw InputError("config: effects.background.resolution is {}; use 2 to 1024", resolution);
-}
 
 BackgroundMap::Texels BackgroundMap::TexelsOf(std::span<const float, 3> direction, int rows) {
   const double x = direction[0], y = direction[1];

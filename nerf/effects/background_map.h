@@ -9,16 +9,6 @@
 
 namespace nerf {
 
-// Surroundings without end, behind everything, that differ in each direction (Background).
-struct BackgroundOptions {
-  // Rows of the map; it has twice as many columns. Few photographs look into one direction: of a
-  // finer map each paints its own part (64 was best of 16, 32, 64 and 128 on validation photographs
-  // of generated captures).
-  int resolution = 64;
-
-  void Check() const;
-};
-
 // Colours by direction, as a map of longitude (about z, columns) and of the angle from the zenith
 // (rows), interpolated between the middles of four texels; what is interpolated goes through the
 // activation of the field's colours, a sigmoid for sRGB-encoded and exp for linear ones. In plain

@@ -1,33 +1,66 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "nerf/effects/background_map.h"
-#include "nerf/effects/depth.h"
-#include "nerf/effects/exposure_fit.h"
-#include "nerf/effects/footprint.h"
+#include "nerf/effects/anti_aliasing.h"
+#include "nerf/effects/background.h"
+#include "nerf/effects/depth_supervision.h"
+#include "nerf/effects/exposure.h"
 #include "nerf/effects/masks.h"
-#include "nerf/effects/poses_options.h"
+#include "nerf/effects/pose_refinement.h"
 #include "nerf/effects/robust.h"
 #include "nerf/effects/unbounded.h"
-#include "nerf/effects/view.h"
+#include "nerf/effects/view_dependence.h"
 
 namespace nerf {
 
-// The effects that a scene may call for, in the order in which light meets them. A block that is
-// there is an effect that is simulated; one that is not there costs nothing.
+// The effects that a scene may call for. A block that is there is an effect that is simulated; one
+// that is not there costs nothing.
 struct EffectsOptions {
-  std::optional<PosesOptions> poses;
+  std::optional<MaskOptions> masks;
   std::optional<UnboundedOptions> unbounded = UnboundedOptions();
-  std::optional<FootprintOptions> footprint;
-  std::optional<ViewOptions> view = ViewOptions();
+  std::optional<ViewDependenceOptions> view_dependence = ViewDependenceOptions();
   std::optional<BackgroundOptions> background;
   std::optional<ExposureOptions> exposure;
-  std::optional<MaskOptions> masks;
   std::optional<RobustOptions> robust;
-  std::optional<DepthOptions> depth;
+  std::optional<DepthSupervisionOptions> depth_supervision;
+  std::optional<PoseRefinementOptions> pose_refinement;
+  std::optional<AntiAliasingOptions> anti_aliasing;
 
-  void Check() const;
+  // Calls visit(descriptor, block) for each effect: the one list of them.
+  template <class Self, class Visitor>
+  static void VisitEffects(Self& effects, Visitor&& visit) {
+    visit(kMasks, effects.masks);
+    visit(kUnbounded, effects.unbounded);
+    visit(kViewDependence, effects.view_dependence);
+    visit(kBackground, effects.background);
+    visit(kExposure, effects.exposure);
+    visit(kRobust, effects.robust);
+    visit(kDepthSupervision, effects.depth_supervision);
+    visit(kPoseRefinement, effects.pose_refinement);
+    visit(kAntiAliasing, effects.anti_aliasing);
+  }
+
+  template <class Self, class Visitor>
+  static void Options(Self& effects, Visitor&& option) {
+    VisitEffects(effects, [&](const EffectDescriptor& effect, auto& block) {
+      option(effect.name, block, effect.help);
+    });
+  }
 };
+
+// The descriptors of all effects.
+const std::vector<const EffectDescriptor*>& AllEffects();
+
+// The effect of a name, or of the name that it had a version ago; null where there is none.
+const EffectDescriptor* FindEffect(const std::string& name);
+
+// The names of all effects.
+std::vector<std::string> EffectNames();
+
+// Whether an effect is on.
+bool Simulates(const EffectsOptions& effects, const EffectDescriptor& effect);
 
 }  // namespace nerf

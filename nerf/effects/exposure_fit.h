@@ -8,9 +8,6 @@
 
 namespace nerf {
 
-// Photographs whose exposure or white balance differ (Exposure).
-struct ExposureOptions {};
-
 // The gain for each channel that takes a rendering closest to a photograph, by least squares over
 // the pixels that are neither black nor white to the end of their scale; 1 where there is none.
 // Photographs that training never saw are compared so where exposures differ: theirs is known to

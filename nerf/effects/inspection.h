@@ -23,16 +23,14 @@ struct Inspection {
   std::string warning;  // about the input, one line; or empty
 };
 
-// Looks at the photographs, and at the sparse points where structure from motion has left some:
-// the colours of each point over the photographs that see it. Without points, EXIF may tell of the
-// exposures.
-//   read     called with the number of photographs read
-//   learned  whether a background may be learned; else contracted space must hold what is far
+// Collects the evidence and lets every effect judge it.
+//   read                  called with the number of photographs read
+//   may_learn_background  else contracted space must hold what is far
 // Throws InputError naming a mask that is broken.
 Inspection Inspect(const PosedImages& posed, const std::function<void(int)>& read = {},
-                   bool learned = true);
+                   bool may_learn_background = true);
 
-// What photographs alone tell, before their poses are known: alpha, linear radiance, masks, EXIF.
+// What photographs alone show, before their poses are known: alpha, linear radiance, masks, EXIF.
 //   photographs  without poses and cameras
 // Throws InputError naming a mask that is broken.
 Inspection InspectPhotographs(const PosedImages& photographs);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "nerf/effects/background.h"
 #include "nerf/effects/background_map.h"
 #include "nerf/field/libtorch.h"
 #include "nerf/scene/pixel_sampler.h"

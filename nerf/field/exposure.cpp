@@ -32,7 +32,7 @@ torch::Tensor Exposure::forward(const torch::Tensor& rgb, const torch::Tensor& p
   return torch::where(torch::logical_and(target >= 1, shown > 1), target, shown);
 }
 
-torch::Tensor Exposure::Unexposed(const torch::Tensor& background,
+torch::Tensor Exposure::DivideByGains(const torch::Tensor& background,
                                   const torch::Tensor& photograph) {
   return background / Gains().to(background.scalar_type()).index_select(0, photograph);
 }

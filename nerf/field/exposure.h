@@ -18,7 +18,7 @@ namespace nerf {
 // colour of Rematas et al. 2022, "Urban Radiance Fields", without its mixing of channels.
 //
 // What a ray is given as its background, where photographs are cut out by alpha, was laid under the
-// photograph as it is and has no exposure: Unexposed. A background that is learned has it.
+// photograph as it is and has no exposure: DivideByGains. A background that is learned has it.
 //
 // Brightness could wander from the gains into the field and back; so the mean of the log gains is
 // taken from each. What is rendered is the field itself: the scene at the photographs' mean
@@ -41,7 +41,7 @@ class Exposure : public torch::nn::Module {
   // A background that the gains will multiply back to what it is.
   //   background  [R,3]    photograph  [R] int64    returns  [R,3]
   // Differentiable as forward is.
-  torch::Tensor Unexposed(const torch::Tensor& background, const torch::Tensor& photograph);
+  torch::Tensor DivideByGains(const torch::Tensor& background, const torch::Tensor& photograph);
 
   // Sets the gains before training, as EXIF tells of them.
   //   stops  [photographs] exposure, log2 of light; their mean is taken from each

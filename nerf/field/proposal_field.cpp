@@ -1,7 +1,5 @@
 #include "nerf/field/proposal_field.h"
 
-#include <algorithm>
-
 #include "nerf/base/random.h"
 #include "nerf/field/density.h"
 
@@ -21,7 +19,5 @@ torch::Tensor ProposalField::Density(const torch::Tensor& positions) {
   const torch::Tensor out = network_->forward(hash_encoding_->forward(positions));
   return ActivateDensity(out.select(1, 0)) * RadialShrinkage(positions);
 }
-
-void ProposalField::SetTrust(double trust) { trust_ = std::clamp(trust, 0.0, 1.0); }
 
 }  // namespace nerf

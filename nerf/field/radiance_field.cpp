@@ -15,7 +15,7 @@ constexpr double kCoarsestLevels = 2.0;
 
 std::vector<std::int64_t> ColorWidths(const FieldOptions& options, ColorModel color_model) {
   std::vector<std::int64_t> widths = {options.geometry_features};
-  if (color_model == ColorModel::kByDirection) widths[0] += kDirectionFeatures;
+  if (color_model == ColorModel::kViewDependent) widths[0] += kDirectionFeatures;
   widths.insert(widths.end(), options.color_layers, options.hidden_width);
   widths.push_back(3);
   return widths;
@@ -40,13 +40,11 @@ RadianceField::RadianceField(const kernels::HashGridOptions& grid, const FieldOp
       "color_network", std::make_shared<Mlp>(ColorWidths(options, color_model), Mix64(seed + 2)));
 }
 
-void RadianceField::SetDetail(double detail) { detail_ = std::clamp(detail, 0.0, 1.0); }
-
-std::vector<float> RadianceField::LevelWeights() const {
+std::vector<float> RadianceField::DetailWeights(double detail) const {
   const std::size_t levels = hash_encoding_->Layout().levels.size();
   std::vector<float> weights(levels, 1.0f);
-  if (detail_ >= 1) return weights;
-  const double active = kCoarsestLevels + detail_ * (static_cast<double>(levels) - kCoarsestLevels);
+  if (detail >= 1) return weights;
+  const double active = kCoarsestLevels + detail * (static_cast<double>(levels) - kCoarsestLevels);
   for (std::size_t l = 0; l < levels; ++l) {
     weights[l] = static_cast<float>(std::clamp(active - static_cast<double>(l), 0.0, 1.0));
   }
@@ -54,34 +52,38 @@ std::vector<float> RadianceField::LevelWeights() const {
 }
 
 // The encoded positions with the levels beyond the detail faded to 0.
-torch::Tensor RadianceField::Encode(const torch::Tensor& positions, const torch::Tensor& shares) {
+torch::Tensor RadianceField::Encode(const torch::Tensor& positions,
+                                    const torch::Tensor& level_weights, double detail) {
   torch::Tensor encoded = hash_encoding_->forward(positions);
-  if (shares.defined()) {
-    encoded = encoded * shares.repeat_interleave(hash_encoding_->Layout().features, 1);
+  if (level_weights.defined()) {
+    encoded = encoded * level_weights.repeat_interleave(hash_encoding_->Layout().features, 1);
   }
-  if (detail_ >= 1) return encoded;
-  const torch::Tensor weights = torch::tensor(LevelWeights(), encoded.options());
+  if (detail >= 1) return encoded;
+  const torch::Tensor weights = torch::tensor(DetailWeights(detail), encoded.options());
   return encoded * weights.repeat_interleave(hash_encoding_->Layout().features);
 }
 
 torch::Tensor RadianceField::ContractedDensity(const torch::Tensor& positions,
-                                               const torch::Tensor& shares) {
-  const torch::Tensor out = density_network_->forward(Encode(positions, shares));
+                                               const torch::Tensor& level_weights,
+                                               double detail) {
+  const torch::Tensor out = density_network_->forward(Encode(positions, level_weights, detail));
   return ActivateDensity(out.select(1, 0));
 }
 
-torch::Tensor RadianceField::Density(const torch::Tensor& positions, const torch::Tensor& shares) {
-  return ContractedDensity(positions, shares) * RadialShrinkage(positions);
+torch::Tensor RadianceField::Density(const torch::Tensor& positions,
+                                     const torch::Tensor& level_weights, double detail) {
+  return ContractedDensity(positions, level_weights, detail) * RadialShrinkage(positions);
 }
 
 FieldOutput RadianceField::forward(const torch::Tensor& positions, const torch::Tensor& directions,
-                                   const torch::Tensor& ray, const torch::Tensor& shares) {
-  const torch::Tensor out = density_network_->forward(Encode(positions, shares));
+                                   const torch::Tensor& ray,
+                                   const torch::Tensor& level_weights, double detail) {
+  const torch::Tensor out = density_network_->forward(Encode(positions, level_weights, detail));
   const torch::Tensor geometry = out.slice(1, 1);
   torch::Tensor color_input = geometry;
-  if (color_model_ == ColorModel::kByDirection) {
+  if (color_model_ == ColorModel::kViewDependent) {
     // Encoded once a ray, then dealt to the ray's samples.
-    const torch::Tensor view = (detail_ * EncodeDirections(directions)).index_select(0, ray);
+    const torch::Tensor view = (detail * EncodeDirections(directions)).index_select(0, ray);
     color_input = torch::cat({geometry, view}, 1);
   }
   const torch::Tensor color = color_network_->forward(color_input);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "nerf/config/field_options.h"
-#include "nerf/effects/view.h"
+#include "nerf/effects/view_dependence.h"
 #include "nerf/field/hash_encoding.h"
 #include "nerf/field/libtorch.h"
 #include "nerf/field/mlp.h"
@@ -26,33 +26,33 @@ class RadianceField : public torch::nn::Module {
   // exponential.
   RadianceField(const kernels::HashGridOptions& grid, const FieldOptions& options,
                 ColorEncoding encoding, std::uint64_t seed,
-                ColorModel color_model = ColorModel::kByDirection);
+                ColorModel color_model = ColorModel::kViewDependent);
+
+  // `detail` in all of these: how much of the field is active, from 0 (the coarsest levels alone, no
+  // view dependence) to 1 (everything). Shape is found while only coarse positions can explain the
+  // photographs; fine levels and directions could explain each of them by itself. Source: the
+  // frequency regularisation of Yang et al. 2023 (FreeNeRF), on hash levels.
 
   // positions [S,3] in the unit cube -> [S], 1 / normalized scene unit
-  //   shares  [S, levels] of what levels give that counts (nerf/effects/footprint.h); undefined:
-  //   all
-  torch::Tensor Density(const torch::Tensor& positions, const torch::Tensor& shares = {});
+  //   level_weights  [S, levels] anti-aliasing weights (nerf/effects/anti_aliasing.h); undefined: 1
+  torch::Tensor Density(const torch::Tensor& positions, const torch::Tensor& level_weights = {},
+                        double detail = 1);
   // The same in 1 / unit of contracted space, which is what the network says: outside the unit ball
   // Density is that times 1/r^2. So a ray to infinity crosses a finite optical depth from the start
   // on, and light from its end, the background, still teaches what stands before it.
-  torch::Tensor ContractedDensity(const torch::Tensor& positions, const torch::Tensor& shares = {});
+  torch::Tensor ContractedDensity(const torch::Tensor& positions,
+                                  const torch::Tensor& level_weights = {}, double detail = 1);
 
   //   positions   [S,3] in the unit cube
   //   directions  [R,3] unit vectors, one a ray
   //   ray         [S] int64, the ray of each sample
   // Differentiable in the parameters and the positions.
   FieldOutput forward(const torch::Tensor& positions, const torch::Tensor& directions,
-                      const torch::Tensor& ray, const torch::Tensor& shares = {});
+                      const torch::Tensor& ray, const torch::Tensor& level_weights = {},
+                      double detail = 1);
 
-  // How much detail the field may show, from 0 (the coarsest levels alone, no dependence on the
-  // direction) to 1 (everything, the state of a new field). Shape is found while only coarse
-  // positions can explain the photographs; fine levels and directions could explain each of them by
-  // itself. Source: the frequency regularisation of Yang et al. 2023 (FreeNeRF), on hash levels.
-  void SetDetail(double detail);
-  double Detail() const { return detail_; }
-
-  // What the detail leaves of each level of the encoding, in [0,1].
-  std::vector<float> LevelWeights() const;
+  // The weight of each level of the encoding at a detail, in [0,1].
+  std::vector<float> DetailWeights(double detail) const;
 
   torch::Dtype Dtype() const;
   ColorEncoding Encoding() const { return encoding_; }
@@ -62,11 +62,11 @@ class RadianceField : public torch::nn::Module {
   const Mlp& ColorNetwork() const { return *color_network_; }
 
  private:
-  torch::Tensor Encode(const torch::Tensor& positions, const torch::Tensor& shares);
+  torch::Tensor Encode(const torch::Tensor& positions, const torch::Tensor& level_weights,
+                       double detail);
 
   ColorEncoding encoding_;
   ColorModel color_model_;
-  double detail_ = 1;
   int geometry_features_;
   std::shared_ptr<HashEncoding> hash_encoding_;
   std::shared_ptr<Mlp> density_network_;  // encoded position -> log density, geometry features

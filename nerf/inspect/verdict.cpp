@@ -57,12 +57,12 @@ std::string EffectAssignment(const std::string& effect, const std::string& setti
 std::string RowOf(const Verdict& v) {
   const std::string sure = v.decided ? fmt::format("{:.0f} %", 100 * v.Sure()) : "-";
   const char* const word = !v.decided ? "undecided" : v.on ? "on" : "off";
-  return fmt::format("{:<11} {:<9} {:>5}  {}\n", v.effect, word, sure, v.evidence);
+  return fmt::format("{:<18} {:<9} {:>5}  {}\n", v.effect, word, sure, v.evidence);
 }
 
 std::string TableOf(const std::vector<Verdict>& verdicts) {
   std::string text =
-      fmt::format("{:<11} {:<9} {:>5}  {}\n", "effect", "verdict", "sure", "evidence");
+      fmt::format("{:<18} {:<9} {:>5}  {}\n", "effect", "verdict", "sure", "evidence");
   for (const Verdict& verdict : verdicts) text += RowOf(verdict);
   return text;
 }

@@ -41,7 +41,10 @@ Verdict Undecided(const std::string& effect, const std::string& evidence);
 // What a trial has decided: on where it was worth so many decibels. Sure: there is no more to ask.
 Verdict Tried(Verdict verdict, double psnr_with, double psnr_without, double worth_it);
 
-// Where rays begin is found as effects are: "near" among their names.
+// What is judged as effects are and is none: properties of the photographs, and where rays begin.
+inline constexpr char kAlpha[] = "alpha";
+inline constexpr char kHdr[] = "hdr";
+inline constexpr char kNearPlane[] = "near";
 inline constexpr char kNearKey[] = "march.near_distance";
 
 // Turns an effect on or off, by its key and JSON for its block ("{}", "null"), as --set does.

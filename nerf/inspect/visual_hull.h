@@ -4,15 +4,11 @@
 #include <functional>
 #include <optional>
 
+#include "nerf/geometry/ball.h"
 #include "nerf/scene/posed_images.h"
 #include "nerf/scene/scene_normalization.h"
 
 namespace nerf {
-
-struct Ball {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double radius = 1;
-};
 
 // A small ball about what the alpha of photographs, 40 at most, leaves: the visual hull, in cells
 // of a sixteenth of the normalized unit. A cell is empty where a photograph sees all of it and

@@ -4,16 +4,29 @@
 #include <span>
 #include <vector>
 
+#include "nerf/base/options.h"
+
 namespace nerf::kernels {
 
 // Multi-resolution hash encoding. Source: Mueller et al. 2022, "Instant Neural Graphics Primitives
 // with a Multiresolution Hash Encoding", section 3.
 struct HashGridOptions {
   int levels = 8;
-  int features = 4;           // a level; 1, 2, 4 or 8
-  int log2_table_size = 17;   // most entries a level, as a power of two
-  int base_resolution = 16;   // cells along an axis at the coarsest level
-  int max_resolution = 2048;  // and at the finest
+  int features = 4;
+  int log2_table_size = 17;
+  int base_resolution = 16;
+  int max_resolution = 2048;
+
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("levels", o.levels, "", Between(1, 32), "resolutions of the encoding");
+    option("features", o.features, "", OneOf({1, 2, 4, 8}), "numbers an entry of a table");
+    option("log2_table_size", o.log2_table_size, "log2 entries", Between(8, 24),
+           "most entries of a level");
+    option("base_resolution", o.base_resolution, "cells", Between(1, 65536),
+           "along an axis of contracted space at the coarsest level");
+    option("max_resolution", o.max_resolution, "cells", Between(1, 65536), "and at the finest");
+  }
 };
 
 // One level: a lattice of (resolution + 1)^3 vertices over the unit cube. While they fit, each

@@ -6,14 +6,12 @@
 #include "nerf/base/input_error.h"
 #include "nerf/field/background.h"
 #include "nerf/field/exposure.h"
-#include "nerf/field/poses.h"
+#include "nerf/field/pose_refinement.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/model/checkpoint.h"
 #include "nerf/model/parameters.h"
-#include "nerf/render/fused_engine.h"
-#include "nerf/render/libtorch_engine.h"
 #include "nerf/sampling/occupancy_grid.h"
 
 namespace nerf {
@@ -22,45 +20,6 @@ namespace {
 using nlohmann::json;
 
 constexpr char kOccupancyName[] = "occupancy";
-
-json JsonFromScene(const SceneFacts& scene) {
-  const SceneNormalization& n = scene.normalized_from_world;
-  json rotation = json::array(), translation = json::array();
-  for (int i = 0; i < 9; ++i) rotation.push_back(n.rotation(i / 3, i % 3));
-  for (int i = 0; i < 3; ++i) translation.push_back(n.translation[i]);
-  json places = json::array();
-  for (const CameraPlace& p : scene.places) {
-    places.push_back({{"centre", {p.centre.x(), p.centre.y(), p.centre.z()}},
-                      {"axis", {p.axis.x(), p.axis.y(), p.axis.z()}},
-                      {"lens", p.lens}});
-  }
-  return {{"encoding", scene.encoding == ColorEncoding::kSrgb ? "srgb" : "linear"},
-          {"has_alpha", scene.has_alpha},
-          {"scale", n.scale},
-          {"rotation", rotation},
-          {"translation", translation},
-          {"photographs", scene.photographs},
-          {"places", places}};
-}
-
-SceneFacts SceneFromJson(const json& scene) {
-  SceneFacts facts;
-  facts.encoding = scene.at("encoding") == "srgb" ? ColorEncoding::kSrgb : ColorEncoding::kLinear;
-  facts.has_alpha = scene.at("has_alpha");
-  facts.photographs = scene.value("photographs", std::vector<std::string>());
-  for (const json& place : scene.value("places", json::array())) {
-    CameraPlace p;
-    for (int i = 0; i < 3; ++i) p.centre[i] = place.at("centre").at(i);
-    for (int i = 0; i < 3; ++i) p.axis[i] = place.at("axis").at(i);
-    p.lens = place.at("lens");
-    facts.places.push_back(p);
-  }
-  SceneNormalization& n = facts.normalized_from_world;
-  n.scale = scene.at("scale");
-  for (int i = 0; i < 9; ++i) n.rotation(i / 3, i % 3) = scene.at("rotation").at(i);
-  for (int i = 0; i < 3; ++i) n.translation[i] = scene.at("translation").at(i);
-  return facts;
-}
 
 // A hostile file may ask for tables of any size: what is made must be what the file holds.
 void CheckSizes(const Config& config, bool with_proposal, const Checkpoint& checkpoint) {
@@ -82,28 +41,13 @@ void CheckSizes(const Config& config, bool with_proposal, const Checkpoint& chec
 
 }  // namespace
 
-SceneFacts FactsOf(const Dataset& data, const SceneNormalization& normalized_from_world) {
-  SceneFacts facts = {data.encoding, data.has_alpha, normalized_from_world, {}, {}, {}};
-  for (const View& view : data.train) {
-    facts.photographs.push_back(view.name);
-    facts.places.push_back({view.normalized_from_camera.translation(),
-                            view.normalized_from_camera.linear().col(2), view.lens});
-  }
-  return facts;
-}
-
-kernels::Precision PrecisionOf(const Config& config) {
-  return config.train.precision == "bfloat16" ? kernels::Precision::kBfloat16
-                                              : kernels::Precision::kFloat;
-}
-
 Model MakeModel(const Config& config, const SceneFacts& scene) {
   Model model;
   model.config = config;
   model.scene = scene;
   model.field = std::make_shared<RadianceField>(config.encoding, config.field, scene.encoding,
                                                 config.train.seed,
-                                                ColorModelWith(config.effects.view.has_value()));
+                                                ColorModelOf(config.effects.view_dependence.has_value()));
   model.grid = std::make_shared<OccupancyGrid>(config.occupancy, config.march.StepLength());
   if (UsesProposal(config.march, scene.has_alpha)) {
     model.proposal = std::make_shared<ProposalField>(config.proposal, config.train.seed);
@@ -121,32 +65,23 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
                                                 scene.encoding);
     if (!scene.exposure_stops.empty()) model.exposure->Start(scene.exposure_stops);
   }
-  if (config.effects.poses) {
-    model.poses = std::make_shared<Poses>(scene.places, *config.effects.poses);
+  if (config.effects.pose_refinement) {
+    model.pose_refinement = std::make_shared<PoseRefinement>(scene.places, *config.effects.pose_refinement);
   } else {
-    model.scene.places.clear();  // nobody asks for them
-  }
-  EngineParts parts;
-  parts.field = model.field;
-  parts.grid = model.grid;
-  parts.proposal = model.proposal;
-  parts.march = config.march;
-  parts.proposal_options = config.proposal;
-  parts.loss = config.loss;
-  parts.gradient_scaling = config.gradient_scaling;
-  parts.robust = config.effects.robust;
-  parts.depth = config.effects.depth;
-  parts.footprint = config.effects.footprint;
-  parts.background = model.background;
-  parts.exposure = model.exposure;
-  parts.poses = model.poses;
-  parts.precision = PrecisionOf(config);
-  if (config.train.engine == "fused") {
-    model.engine = std::make_shared<FusedEngine>(parts);
-  } else {
-    model.engine = std::make_shared<LibTorchEngine>(parts);
+    model.scene.places.clear();  // not needed
   }
   return model;
+}
+
+Model CloneModel(const Model& model) {
+  Model clone = MakeModel(model.config, model.scene);
+  clone.annealing = model.annealing;
+  const torch::NoGradGuard no_grad;
+  const auto from = NamedParameters(model), to = NamedParameters(clone);
+  for (std::size_t i = 0; i < from.size(); ++i) torch::Tensor(to[i].second).copy_(from[i].second);
+  clone.grid->Density() = model.grid->Density();
+  clone.grid->Refresh();
+  return clone;
 }
 
 std::array<float, 3> GainsOf(const Model& model, const std::string& photograph) {
@@ -177,15 +112,15 @@ std::vector<std::pair<std::string, torch::Tensor>> NamedParameters(const Model& 
   if (model.proposal) add("proposal.", *model.proposal);
   if (model.background) add("background.", *model.background);
   if (model.exposure) add("exposure.", *model.exposure);
-  if (model.poses) add("poses.", *model.poses);
+  if (model.pose_refinement) add("poses.", *model.pose_refinement);
   return named;
 }
 
 void AddModel(const Model& model, Checkpoint& checkpoint) {
   checkpoint.meta["config"] = JsonFromConfig(model.config);
   checkpoint.meta["scene"] = JsonFromScene(model.scene);
-  checkpoint.meta["detail"] = model.field->Detail();
-  if (model.proposal) checkpoint.meta["trust"] = model.proposal->Trust();
+  checkpoint.meta["detail"] = model.annealing.detail;
+  if (model.proposal) checkpoint.meta["trust"] = model.annealing.proposal;
   for (const auto& [name, parameter] : NamedParameters(model)) {
     checkpoint.tensors[name] = parameter;
   }
@@ -203,8 +138,8 @@ Model ModelFromCheckpoint(const Checkpoint& checkpoint) {
     for (const auto& [name, parameter] : NamedParameters(model)) {
       CopyTensor(checkpoint.tensors, name, parameter);
     }
-    if (model.proposal) model.proposal->SetTrust(checkpoint.meta.at("trust"));
-    model.field->SetDetail(checkpoint.meta.at("detail"));
+    if (model.proposal) model.annealing.proposal = checkpoint.meta.at("trust");
+    model.annealing.detail = checkpoint.meta.at("detail");
     std::vector<float>& density = model.grid->Density();
     CopyTensor(checkpoint.tensors, kOccupancyName,
                torch::from_blob(density.data(), {static_cast<std::int64_t>(density.size())}));

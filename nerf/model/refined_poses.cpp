@@ -3,23 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/field/poses.h"
+#include "nerf/field/pose_refinement.h"
 #include "nerf/scene/camera_intrinsics.h"
 
 namespace nerf {
 
 PosedImages RefinedPoses(const Model& model, PosedImages posed) {
-  if (!model.poses) return posed;
+  if (!model.pose_refinement) return posed;
   const auto& normalized_from_world = model.scene.normalized_from_world;
   const std::vector<std::string>& names = model.scene.photographs;
   for (PosedImage& image : posed.images) {
     const auto found = std::ranges::find(names, image.name);
     if (found == names.end()) continue;  // held out: as it was
     image.world_from_camera = normalized_from_world.WorldFromCamera(
-        model.poses->Refined(found - names.begin(),
+        model.pose_refinement->Refined(found - names.begin(),
                              normalized_from_world.NormalizedFromCamera(image.world_from_camera)));
   }
-  const torch::Tensor factors = model.poses->LogFocals().detach().exp();
+  const torch::Tensor factors = model.pose_refinement->LogFocals().detach().exp();
   for (std::size_t k = 0; k < posed.cameras.size(); ++k) {
     const auto lens = static_cast<std::int64_t>(k);
     if (lens >= factors.size(0)) break;  // of photographs that are held out

@@ -27,10 +27,13 @@ Checkpoint ReadRunCheckpoint(const fs::path& run) {
 
 OpenedRun OpenRun(const fs::path& run) {
   const Checkpoint checkpoint = ReadRunCheckpoint(run);
-  Model model = ModelFromCheckpoint(checkpoint);
-  const PosedImages posed = sfm::ReadTransformsJson(PosesPath(run), sfm::AbsentImages::kKeep);
-  return {model, RefinedPoses(model, posed), checkpoint.meta.value("step", std::int64_t{0}),
-          checkpoint.meta.value("training_seconds", 0.0)};
+  OpenedRun opened;
+  opened.model = std::make_shared<const ModelSnapshot>(
+      ModelFromCheckpoint(checkpoint), checkpoint.meta.value("step", std::int64_t{0}));
+  opened.posed = RefinedPoses(opened.model->GetModel(),
+                              sfm::ReadTransformsJson(PosesPath(run), sfm::AbsentImages::kKeep));
+  opened.training_seconds = checkpoint.meta.value("training_seconds", 0.0);
+  return opened;
 }
 
 }  // namespace nerf

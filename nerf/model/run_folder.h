@@ -1,8 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
-#include "nerf/model/model.h"
+#include "nerf/model/snapshot.h"
 #include "nerf/scene/posed_images.h"
 
 namespace nerf {
@@ -26,9 +27,8 @@ std::filesystem::path SparsePath(const std::filesystem::path& run);
 
 // A trained run, to be looked at.
 struct OpenedRun {
-  Model model;
+  std::shared_ptr<const ModelSnapshot> model;
   PosedImages posed;  // as the training refined them, where it did
-  std::int64_t step = 0;
   double training_seconds = 0;
 };
 

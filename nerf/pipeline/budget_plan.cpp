@@ -23,8 +23,8 @@ constexpr double kCostOfFast = 0.55, kCostOfAccurate = 1.25;
 }  // namespace
 
 BudgetPlan PlanBudget(Trainer& balanced, double seconds) {
-  balanced.TrySteps(kFirstSteps);
-  const double of_step = std::max(1e-6, balanced.TrySteps(kTimedSteps));
+  balanced.TakeSteps(kFirstSteps);
+  const double of_step = std::max(1e-6, balanced.TakeSteps(kTimedSteps));
   const double steps = seconds / of_step;
   if (steps < kStepsOfSmallBatches) return {"fast", steps / kCostOfFast};
   if (steps < kStepsOfLargeTables) return {"balanced", steps};

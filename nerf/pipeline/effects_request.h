@@ -1,18 +1,30 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
+#include "nerf/effects/effects.h"
+
 namespace nerf {
 
-// What a person says of the effects to be simulated, with --effects.
+// What the user decides about the effects of a run.
 struct EffectsRequest {
-  bool inspect = true;                   // the others as the capture calls for them
-  std::vector<std::string> assignments;  // of those that are asked for, "effects.NAME=..."
+  // Whether the capture is inspected, for all effects that the user does not name. Otherwise they
+  // are as configured.
+  bool inspect = true;
+  struct Choice {
+    const EffectDescriptor* effect = nullptr;
+    bool on = false;
+  };
+  std::vector<Choice> choices;
+
+  // The choices as --set takes them.
+  std::vector<std::string> Assignments() const;
 };
 
-// "auto", "config" (as configured, without a look at the capture), or a list such as
-// "+exposure,-view", whose other effects stay automatic.
+// "auto", "config" (as configured, without an inspection), or a list such as
+// "+exposure,-view_dependence", whose other effects stay automatic.
 // Throws InputError naming an effect that does not exist.
 EffectsRequest ParseEffects(const std::string& text);
 

@@ -16,8 +16,4 @@ RayBatch WithBackground(const RayBatch& rays, const BackgroundMap& map) {
   return out;
 }
 
-RenderOutput BackgroundRenderer::Render(const RayBatch& rays) {
-  return inner_->Render(WithBackground(rays, background_->Map()));
-}
-
 }  // namespace nerf

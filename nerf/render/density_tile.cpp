@@ -5,7 +5,7 @@
 
 #include "nerf/base/parallel.h"
 #include "nerf/base/stopwatch.h"
-#include "nerf/effects/footprint.h"
+#include "nerf/effects/anti_aliasing.h"
 #include "nerf/field/activations.h"
 #include "nerf/field/density.h"
 #include "nerf/field/tensor_span.h"
@@ -82,10 +82,10 @@ void TileDensity::ContractedDensity(std::span<const float> positions, DensityTil
   tile.activations.Resize(network_, samples);
   kernels::HashEncodeTile(hash_.Layout(), Span<const float>(hash_.Table()).data(), positions.data(),
                           samples, level_weights_, tile.activations.rows[0], Row());
-  tile.shares.clear();
+  tile.level_weights.clear();
   if (!tile.footprint.empty()) {
-    tile.shares = LevelShares(hash_.Layout(), tile.footprint);
-    MultiplyByShares(samples, tile);
+    tile.level_weights = AntiAliasingWeights(hash_.Layout(), tile.footprint);
+    ApplyAntiAliasing(samples, tile);
   }
   timer.Lap(tile.seconds.encoding);
   network_.Forward(samples, tile.activations.rows);
@@ -97,15 +97,15 @@ void TileDensity::ContractedDensity(std::span<const float> positions, DensityTil
 }
 
 // Forward the encodings, on the way back their gradients.
-void TileDensity::MultiplyByShares(std::int64_t samples, DensityTile& tile) const {
+void TileDensity::ApplyAntiAliasing(std::int64_t samples, DensityTile& tile) const {
   const std::int64_t levels = static_cast<std::int64_t>(hash_.Layout().levels.size());
   const int features = hash_.Layout().features;
   float* const rows = tile.activations.rows[0];
   for (std::int64_t i = 0; i < samples; ++i) {
     for (std::int64_t l = 0; l < levels; ++l) {
-      const float share = tile.shares[i * levels + l];
-      if (share == 1) continue;
-      for (int f = 0; f < features; ++f) rows[i * Row() + l * features + f] *= share;
+      const float weight = tile.level_weights[i * levels + l];
+      if (weight == 1) continue;
+      for (int f = 0; f < features; ++f) rows[i * Row() + l * features + f] *= weight;
     }
   }
 }
@@ -131,9 +131,9 @@ void TileDensity::Keep(std::span<const std::int64_t> kept, DensityTile& tile) co
       float* const rows = tile.activations.rows[l];
       std::copy_n(rows + from * width, width, rows + to * width);
     }
-    if (!tile.shares.empty()) {
+    if (!tile.level_weights.empty()) {
       const std::size_t levels = hash_.Layout().levels.size();
-      std::copy_n(&tile.shares[from * levels], levels, &tile.shares[to * levels]);
+      std::copy_n(&tile.level_weights[from * levels], levels, &tile.level_weights[to * levels]);
     }
   }
   tile.sigma.resize(kept.size());
@@ -148,7 +148,7 @@ void TileDensity::Backward(std::int64_t samples, std::span<const float> position
   }
   network_.Backward(samples, tile.activations.rows, gradients.network);
   timer.Lap(tile.seconds.networks);
-  if (!tile.shares.empty()) MultiplyByShares(samples, tile);
+  if (!tile.level_weights.empty()) ApplyAntiAliasing(samples, tile);
   const float* const encoded = tile.activations.rows[0];
   gradients.position.insert(gradients.position.end(), positions.begin(),
                             positions.begin() + 3 * samples);

@@ -23,7 +23,7 @@ struct TileRows {
 // Densities of the samples of a tile, and what the way back needs.
 struct DensityTile {
   std::vector<float> footprint;  // [S] to be set before, where pixels see patches; or empty
-  std::vector<float> shares;     // [S, levels] that footprints leave of the encoding; or empty
+  std::vector<float> level_weights;  // [S, levels] anti-aliasing weights; or empty
   std::vector<float> sigma;      // [S]
   TileRows activations;
   StageSeconds seconds;  // so far, for encoding and networks
@@ -84,7 +84,7 @@ class TileDensity {
 
  private:
   int Row() const;  // floats between the encodings of two samples
-  void MultiplyByShares(std::int64_t samples, DensityTile& tile) const;
+  void ApplyAntiAliasing(std::int64_t samples, DensityTile& tile) const;
 
   const HashEncoding& hash_;
   const Mlp& module_;

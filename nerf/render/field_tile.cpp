@@ -4,7 +4,7 @@
 #include <array>
 
 #include "nerf/base/stopwatch.h"
-#include "nerf/effects/view.h"
+#include "nerf/effects/view_dependence.h"
 #include "nerf/field/activations.h"
 #include "nerf/field/direction_encoding.h"
 #include "nerf/kernels/activations.h"
@@ -14,16 +14,16 @@ namespace nerf {
 
 using kernels::PaddedWidth;
 
-TileField::TileField(std::shared_ptr<RadianceField> field, kernels::Precision precision)
-    : field_(std::move(field)),
-      density_(field_->Hash(), field_->DensityNetwork(), precision),
-      color_(field_->ColorNetwork().Widths(), precision),
+TileField::TileField(const RadianceField& field, kernels::Precision precision)
+    : field_(field),
+      density_(field_.Hash(), field_.DensityNetwork(), precision),
+      color_(field_.ColorNetwork().Widths(), precision),
       geometry_features_(density_.Outputs() - 1) {}
 
-void TileField::Refresh() {
-  density_.Refresh(field_->LevelWeights());
-  LoadWeights(field_->ColorNetwork(), color_);
-  direction_weight_ = static_cast<float>(field_->Detail());
+void TileField::Refresh(double detail) {
+  density_.Refresh(field_.DetailWeights(detail));
+  LoadWeights(field_.ColorNetwork(), color_);
+  direction_weight_ = static_cast<float>(detail);
 }
 
 void TileField::Radiance(std::int64_t samples, std::span<const std::int64_t> ray,
@@ -50,7 +50,7 @@ void TileField::Radiance(std::int64_t samples, std::span<const std::int64_t> ray
   for (std::int64_t i = 0; i < samples; ++i) {
     std::copy_n(out + i * PaddedWidth(3), 3, &tile.radiance[3 * i]);
   }
-  if (field_->Encoding() == ColorEncoding::kSrgb) {
+  if (field_.Encoding() == ColorEncoding::kSrgb) {
     kernels::Sigmoid(tile.radiance);
   } else {
     kernels::TruncatedExp(tile.radiance, 0.0f, static_cast<float>(kExpLimit));
@@ -62,7 +62,7 @@ void TileField::Backward(std::int64_t samples, std::span<const float> positions,
                          std::span<const float> dL_dsigma, std::span<const float> dL_dradiance,
                          FieldTile& tile, FieldGradients& gradients) const {
   LapTimer timer;
-  const bool sigmoid = field_->Encoding() == ColorEncoding::kSrgb;
+  const bool sigmoid = field_.Encoding() == ColorEncoding::kSrgb;
   float* const dL_dout = tile.color.rows[color_.Layers()];
   for (std::int64_t i = 0; i < samples; ++i) {
     for (int c = 0; c < 3; ++c) {
@@ -88,7 +88,7 @@ void TileField::Clear(FieldGradients& gradients) const {
 void TileField::AddToParameters(std::span<const FieldGradients* const> gradients) {
   std::vector<const DensityGradients*> of_density;
   for (const FieldGradients* part : gradients) {
-    AddWeightGradients(part->color, color_, field_->ColorNetwork());
+    AddWeightGradients(part->color, color_, field_.ColorNetwork());
     of_density.push_back(&part->density);
   }
   density_.AddToParameters(of_density);

@@ -25,10 +25,12 @@ struct FieldGradients {
 // RadianceField for tiles of samples (see TileDensity): the same formula on the same parameters.
 class TileField {
  public:
-  TileField(std::shared_ptr<RadianceField> field, kernels::Precision precision);
+  // The field must outlive it.
+  TileField(const RadianceField& field, kernels::Precision precision);
 
-  // Takes over the networks' weights and the detail, which others change between batches.
-  void Refresh();
+  // Copies the networks' weights, which the optimiser changes between batches.
+  //   detail  see RadianceField
+  void Refresh(double detail);
 
   const TileDensity& Density() const { return density_; }
 
@@ -48,7 +50,7 @@ class TileField {
   void AddToParameters(std::span<const FieldGradients* const> gradients);
 
  private:
-  std::shared_ptr<RadianceField> field_;
+  const RadianceField& field_;
   TileDensity density_;
   kernels::TileMlp color_;
   int geometry_features_;

@@ -1,22 +1,22 @@
-// FusedEngine's way back, from the pixels of a tile to the sums of gradients of its thread.
+// FusedEngine's backward pass, from the pixels of a tile to the sums of gradients of its thread.
 #include <algorithm>
 
 #include "nerf/base/stopwatch.h"
-#include "nerf/effects/depth.h"
+#include "nerf/effects/depth_supervision.h"
 #include "nerf/kernels/volume_rendering.h"
 #include "nerf/render/fused_worker.h"
 #include "nerf/render/non_finite_error.h"
 
 namespace nerf {
 
-// As nerf/effects/depth.h defines it. On the way back the samples' costs stand for their distances,
+// As nerf/effects/depth_supervision.h defines it. In the backward pass the samples' costs stand for their distances,
 // which no other loss asks about.
 void FusedEngine::AddDepthLoss(const TargetBatch& batch, std::int64_t first, Worker& worker) const {
   const FusedTile& tile = worker.tile;
   const std::int64_t count = tile.Rays(), size = tile.samples.Size();
-  const double weight = parts_.depth->weight;
+  const double weight = parts_.config.effects.depth_supervision->weight;
   const auto slope = static_cast<float>(weight / static_cast<double>(batch.rays.Size()));
-  worker.costs = CostsOfSamples(tile.samples.t, tile.ray, batch.distance, *parts_.depth);
+  worker.costs = DepthCosts(tile.samples.t, tile.ray, batch.distance, *parts_.config.effects.depth_supervision);
   worker.weights.resize(size);
   kernels::WeightsForward<float>(tile.ray_begin, tile.field.density.sigma, tile.samples.dt,
                                  worker.weights, 0, count);
@@ -43,7 +43,7 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
         DescribeNonFinite(tile, std::span(batch.rgb).subspan(3 * first, 3 * count), first));
   }
   kernels::RaySegments<float> segments = tile.Segments(batch.rays, first);
-  if (parts_.depth && !batch.distance.empty()) {
+  if (parts_.config.effects.depth_supervision && !batch.distance.empty()) {
     AddDepthLoss(batch, first, worker);
     segments.t = worker.costs;
   }
@@ -70,7 +70,7 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
                                   worker.proposal);
     timer.Lap(tile.sampling_seconds);
   }
-  if (const double full = parts_.gradient_scaling.full_distance; full > 0) {
+  if (const double full = parts_.config.gradient_scaling.full_distance; full > 0) {
     for (std::int64_t i = 0; i < size; ++i) {
       const double distance = static_cast<double>(tile.samples.t[i]) / full;
       const auto scale = static_cast<float>(std::min(1.0, distance * distance));
@@ -78,7 +78,7 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
       for (int c = 0; c < 3; ++c) worker.dL_dradiance[3 * i + c] *= scale;
     }
   }
-  if (parts_.poses) {
+  if (parts_.pose_refinement) {
     worker.ray.insert(worker.ray.end(), tile.ray.begin(), tile.ray.begin() + size);
     worker.t.insert(worker.t.end(), tile.samples.t.begin(), tile.samples.t.begin() + size);
     for (std::int64_t i = 0; i < size; ++i) {

@@ -1,18 +1,15 @@
 #include "nerf/render/fused_engine.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <mutex>
 
-#include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/field/background.h"
 #include "nerf/field/exposure.h"
-#include "nerf/field/poses.h"
+#include "nerf/field/pose_refinement.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/render/background_rays.h"
+#include "nerf/render/fused_renderer.h"
 #include "nerf/render/fused_worker.h"
 #include "nerf/render/ray_gradient.h"
 #include "nerf/sampling/occupancy_grid.h"
@@ -20,28 +17,31 @@
 namespace nerf {
 namespace {
 
-// Positions whose density is asked for at once, without rays.
+// Positions without rays whose densities are evaluated at once.
 constexpr std::int64_t kTilePositions = 512;
 
 }  // namespace
 
-FusedEngine::FusedEngine(EngineParts parts) : parts_(std::move(parts)), forward_(parts_) {
-  pixel_model_.loss = parts_.loss;
-  pixel_model_.robust = parts_.robust;
-  if (parts_.exposure) {
-    pixel_model_.saturates = parts_.exposure->Saturates();
-    pixel_model_.unexposed = !parts_.background;
+FusedEngine::FusedEngine(const ModelParts& parts) : parts_(parts), forward_(parts) {
+  pixel_model_.loss = parts.config.loss;
+  if (parts.exposure) {
+    pixel_model_.saturates = parts.exposure->Saturates();
+    pixel_model_.unexposed = !parts.background;
   }
 }
 
 FusedEngine::~FusedEngine() = default;
 
-void FusedEngine::SetProgress(double progress) {
-  if (parts_.robust) pixel_model_.robust = parts_.robust->At(progress);
+RenderOutput FusedEngine::Render(const RayBatch& rays) const {
+  return FusedRenderer(parts_).Render(rays);
 }
 
-void FusedEngine::Refresh() {
-  forward_.Refresh();
+// Takes over the parameters, which the optimiser changes between batches, and the step's context.
+void FusedEngine::Refresh(const StepContext& context) {
+  forward_.Refresh(context.annealing);
+  if (const auto& robust = parts_.config.effects.robust) {
+    pixel_model_.robust = robust->At(context.progress);
+  }
   if (parts_.background) background_ = parts_.background->Map();
   if (parts_.exposure) {
     const torch::NoGradGuard no_grad;
@@ -51,74 +51,33 @@ void FusedEngine::Refresh() {
   }
 }
 
-RenderOutput FusedEngine::Render(const RayBatch& rays) {
-  CheckRays(rays);
-  Refresh();
-  return parts_.background ? RenderRays(WithBackground(rays, background_)) : RenderRays(rays);
-}
-
-RenderOutput FusedEngine::RenderRays(const RayBatch& rays) const {
-  const std::int64_t count = rays.Size();
-  RenderOutput out;
-  out.rgb.resize(3 * count);
-  out.opacity.resize(count);
-  out.depth.resize(count);
-  const auto near = static_cast<float>(parts_.march.near_distance);
-  const auto far = static_cast<float>(parts_.march.far_distance);
-  std::atomic<std::int64_t> samples = 0;
-  std::mutex adding;
-  // Neighbouring rays share cells; chunks are small enough to keep all threads at work to the end.
-  constexpr std::int64_t kChunk = 256;
-  ParallelForEach((count + kChunk - 1) / kChunk, [&](std::int64_t chunk) {
-    FusedTile tile;
-    LapTimer timer;
-    const std::int64_t last = std::min(count, (chunk + 1) * kChunk);
-    for (std::int64_t first = chunk * kChunk; first < last;) {
-      const std::int64_t next = forward_.Run(rays, first, last, tile);
-      std::copy(tile.rgb.begin(), tile.rgb.end(), out.rgb.begin() + 3 * first);
-      std::copy(tile.opacity.begin(), tile.opacity.end(), out.opacity.begin() + first);
-      for (std::int64_t r = first; r < next; ++r) {
-        const float opacity = tile.opacity[r - first], depth = tile.depth[r - first];
-        out.depth[r] = opacity > 0 ? std::clamp(depth / opacity, near, far) : depth;
-      }
-      first = next;
-    }
-    samples += tile.placed;
-    double all = 0;
-    timer.Lap(all);
-    const std::lock_guard lock(adding);
-    out.seconds.Add(tile.Seconds(all), 1.0 / NumThreads());
-  });
-  out.samples = samples;
-  return out;
-}
-
-StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch) {
+StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch, const StepContext& context) {
   CheckRays(batch.rays);
-  Refresh();
-  if (!parts_.background && !parts_.poses && !parts_.exposure) return LearnFrom(batch);
+  Refresh(context);
+  if (!parts_.background && !parts_.pose_refinement && !parts_.exposure) return LearnFrom(batch);
   TargetBatch seen =
       pixel_model_.unexposed ? WithUnexposedBackgrounds(batch, pixel_model_.gain) : batch;
   const std::int64_t count = batch.rays.Size();
-  Poses::Moved moved;
-  if (parts_.poses) {
-    moved = parts_.poses->forward(TensorOf(batch.rays.origin, {count, 3}, torch::kFloat),
-                                  TensorOf(batch.rays.direction, {count, 3}, torch::kFloat),
-                                  TensorOf(batch.photograph, {count}, torch::kLong));
-    seen.rays = Poses::WithMoved(batch.rays, moved);
+  RefinedRays refined;
+  if (parts_.pose_refinement) {
+    refined = parts_.pose_refinement->forward(
+        TensorOf(batch.rays.origin, {count, 3}, torch::kFloat),
+        TensorOf(batch.rays.direction, {count, 3}, torch::kFloat),
+        TensorOf(batch.photograph, {count}, torch::kLong));
+    seen.rays = WithRefinedRays(batch.rays, refined);
   }
   if (parts_.background) seen.rays = WithBackground(seen.rays, background_);
   const StepResult result = LearnFrom(seen);
-  if (parts_.poses) {
+  if (parts_.pose_refinement) {
     const RayGradient gradient = GradientOfRays(seen.rays);
-    torch::autograd::backward({moved.origin, moved.direction},
+    torch::autograd::backward({refined.origin, refined.direction},
                               {TensorOf(gradient.origin, {count, 3}, torch::kFloat).clone(),
                                TensorOf(gradient.direction, {count, 3}, torch::kFloat).clone()});
   }
   return result;
 }
 
-// What the samples of the batch that was learned from pass on to its rays.
+// dL/dray of the batch that was learned from, by its samples.
 RayGradient FusedEngine::GradientOfRays(const RayBatch& rays) const {
   RayGradient gradient = {std::vector<float>(rays.origin.size(), 0.0f),
                           std::vector<float>(rays.direction.size(), 0.0f)};
@@ -132,39 +91,49 @@ RayGradient FusedEngine::GradientOfRays(const RayBatch& rays) const {
   return gradient;
 }
 
+// Forward and backward pass of the rays [first, last).
+void FusedEngine::LearnShare(const TargetBatch& batch, std::int64_t first, std::int64_t last,
+                             Worker& worker, std::span<float> ray_error) {
+  worker.pixels.Clear(pixel_model_);
+  worker.background.assign(background_.raw.size(), 0.0f);
+  worker.ray.clear();
+  worker.t.clear();
+  worker.dL_dlog_sigma.clear();
+  worker.tile.placed = worker.tile.shaded = 0;
+  worker.tile.sampling_seconds = 0;
+  worker.tile.field.density.seconds = {};
+  LapTimer timer;
+  forward_.Field().Clear(worker.field);
+  if (forward_.Proposal()) forward_.Proposal()->Clear(worker.proposal);
+  while (first < last) {
+    const std::int64_t next = forward_.Run(batch.rays, first, last, worker.tile);
+    Backward(batch, first, worker, ray_error);
+    first = next;
+  }
+  double all = 0;
+  timer.Lap(all);
+  worker.seconds = worker.tile.Seconds(all);
+}
+
 StepResult FusedEngine::LearnFrom(const TargetBatch& batch) {
   const std::int64_t count = batch.rays.Size();
   // A fixed share of the rays for each thread, so that sums repeat bit for bit.
   const auto threads = static_cast<std::int64_t>(NumThreads());
   workers_.resize(threads);
-  StepResult result;
-  result.ray_error.resize(count);
+  std::vector<float> ray_error(count);
   ParallelFor(threads, 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t k = begin; k < end; ++k) {
-      Worker& worker = workers_[k];
-      worker.pixels.Clear(pixel_model_);
-      worker.background.assign(background_.raw.size(), 0.0f);
-      worker.ray.clear();
-      worker.t.clear();
-      worker.dL_dlog_sigma.clear();
-      worker.tile.placed = worker.tile.shaded = 0;
-      worker.tile.sampling_seconds = 0;
-      worker.tile.field.density.seconds = {};
-      LapTimer timer;
-      forward_.Field().Clear(worker.field);
-      if (forward_.Proposal()) forward_.Proposal()->Clear(worker.proposal);
-      const std::int64_t last = count * (k + 1) / threads;
-      for (std::int64_t first = count * k / threads; first < last;) {
-        const std::int64_t next = forward_.Run(batch.rays, first, last, worker.tile);
-        Backward(batch, first, worker, result.ray_error);
-        first = next;
-      }
-      double all = 0;
-      timer.Lap(all);
-      worker.seconds = worker.tile.Seconds(all);
+      LearnShare(batch, count * k / threads, count * (k + 1) / threads, workers_[k], ray_error);
     }
   });
+  StepResult result = AddUp(count);
+  result.ray_error = std::move(ray_error);
+  return result;
+}
 
+// Adds the workers' sums, in their order, to the gradients of the parameters.
+StepResult FusedEngine::AddUp(std::int64_t rays) {
+  StepResult result;
   std::vector<double> dL_dlog_gain(pixel_model_.gain.size(), 0.0);
   std::vector<float> dL_dmap(background_.raw.size(), 0.0f);
   std::vector<const FieldGradients*> of_field;
@@ -180,7 +149,7 @@ StepResult FusedEngine::LearnFrom(const TargetBatch& batch) {
     result.squared_error += worker.pixels.squared_error;
     result.marched += worker.tile.placed;
     result.shaded += worker.tile.shaded;
-    result.seconds.Add(worker.seconds, 1.0 / static_cast<double>(threads));
+    result.seconds.Add(worker.seconds, 1.0 / static_cast<double>(workers_.size()));
   }
   LapTimer timer;
   if (parts_.background) parts_.background->AddGradient(dL_dmap);
@@ -191,16 +160,16 @@ StepResult FusedEngine::LearnFrom(const TargetBatch& batch) {
     forward_.Proposal()->AddToParameters(of_proposal);
     timer.Lap(result.seconds.sampling);
   }
-  const double channels = 3.0 * static_cast<double>(std::max<std::int64_t>(1, count));
+  const double channels = 3.0 * static_cast<double>(std::max<std::int64_t>(1, rays));
   result.loss /= channels;
   result.squared_error /= channels;
   return result;
 }
 
-void FusedEngine::UpdateOccupancy(std::int64_t step, std::uint64_t seed) {
+void FusedEngine::UpdateOccupancy(const StepContext& context) {
   if (parts_.proposal) return;
-  Refresh();
-  parts_.grid->Update(step, seed, [this](std::span<const float> positions) {
+  Refresh(context);
+  parts_.grid->Update(context.step, context.seed, [this](std::span<const float> positions) {
     const auto count = static_cast<std::int64_t>(positions.size() / 3);
     std::vector<float> sigma(count);
     ParallelFor(count, kTilePositions, [&](std::int64_t begin, std::int64_t end) {

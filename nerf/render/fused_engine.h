@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "nerf/effects/background_map.h"
@@ -12,29 +13,32 @@ namespace nerf {
 struct RayGradient;
 
 // What LibTorchEngine defines, a tile of rays at a time: placing of samples, encoding, networks,
-// compositing, loss and the way back run one after the other while the tile's samples are in the
-// core's cache, with kernels of our own on LibTorch's parameters, in float.
+// compositing, loss and the backward pass run one after the other while the tile's samples are in
+// the core's cache, with kernels of our own on LibTorch's parameters, in float.
 class FusedEngine : public Engine {
  public:
-  explicit FusedEngine(EngineParts parts);
+  // `parts` must outlive it.
+  explicit FusedEngine(const ModelParts& parts);
   ~FusedEngine() override;
 
-  RenderOutput Render(const RayBatch& rays) override;
-  StepResult AccumulateGradients(const TargetBatch& batch) override;
-  void SetProgress(double progress) override;
-  void UpdateOccupancy(std::int64_t step, std::uint64_t seed) override;
+  using Engine::AccumulateGradients;
+  RenderOutput Render(const RayBatch& rays) const override;
+  StepResult AccumulateGradients(const TargetBatch& batch, const StepContext& context) override;
+  void UpdateOccupancy(const StepContext& context) override;
 
  private:
   struct Worker;
-  void Refresh();
-  RenderOutput RenderRays(const RayBatch& rays) const;
+  void Refresh(const StepContext& context);
   StepResult LearnFrom(const TargetBatch& batch);
+  void LearnShare(const TargetBatch& batch, std::int64_t first, std::int64_t last, Worker& worker,
+                  std::span<float> ray_error);
+  StepResult AddUp(std::int64_t rays);
   RayGradient GradientOfRays(const RayBatch& rays) const;
   void AddDepthLoss(const TargetBatch& batch, std::int64_t first, Worker& worker) const;
   void Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
                 std::span<float> ray_error) const;
 
-  EngineParts parts_;
+  const ModelParts& parts_;
   FusedForward forward_;
   BackgroundMap background_;  // where it is learned
   PixelModel pixel_model_;

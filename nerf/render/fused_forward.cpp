@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/effects/footprint.h"
+#include "nerf/effects/anti_aliasing.h"
 #include "nerf/sampling/occupancy_grid.h"
 
 namespace nerf {
@@ -17,17 +17,16 @@ constexpr std::int64_t kTileSamples = 256;
 
 }  // namespace
 
-FusedForward::FusedForward(const EngineParts& parts)
-    : grid_(parts.grid),
-      march_(parts.march),
-      footprint_(parts.footprint),
-      field_(parts.field, parts.precision) {
-  if (parts.proposal) proposal_.emplace(parts.proposal, parts.proposal_options, parts.march);
+FusedForward::FusedForward(const ModelParts& parts)
+    : parts_(parts), field_(*parts.field, parts.config.train.precision) {
+  if (parts.proposal) {
+    proposal_.emplace(*parts.proposal, parts.config.proposal, parts.config.march);
+  }
 }
 
-void FusedForward::Refresh() {
-  field_.Refresh();
-  if (proposal_) proposal_->Refresh();
+void FusedForward::Refresh(const Annealing& annealing) {
+  field_.Refresh(annealing.detail);
+  if (proposal_) proposal_->Refresh(annealing.proposal);
 }
 
 // The samples of rays from `first` on, as many rays as fill a tile. Returns the first ray that is
@@ -51,7 +50,7 @@ std::int64_t FusedForward::PlaceSamples(const RayBatch& rays, std::int64_t first
   tile.samples.t.clear();
   tile.samples.dt.clear();
   for (; end < last && tile.samples.Size() < kTileSamples; ++end) {
-    MarchRay(rays, end, *grid_, march_, tile.samples);
+    MarchRay(rays, end, *parts_.grid, parts_.config.march, tile.samples);
     tile.ray.resize(tile.samples.Size(), end);
     tile.ray_begin.push_back(tile.samples.Size());
   }
@@ -63,7 +62,7 @@ void FusedForward::KeepVisible(FusedTile& tile) const {
   const std::int64_t rays = tile.Rays();
   tile.kept_of_ray.resize(rays);
   kernels::CountVisible<float>(tile.ray_begin, tile.field.density.sigma, tile.samples.dt,
-                               march_.stop_transmittance, tile.kept_of_ray, 0, rays);
+                               parts_.config.march.stop_transmittance, tile.kept_of_ray, 0, rays);
   tile.kept.clear();
   std::int64_t begin = 0;
   for (std::int64_t r = 0; r < rays; ++r) {
@@ -92,8 +91,8 @@ std::int64_t FusedForward::Run(const RayBatch& rays, std::int64_t first, std::in
   const std::int64_t end = PlaceSamples(rays, first, last, tile);
   timer.Lap(tile.sampling_seconds);
   tile.placed += tile.samples.Size();
-  if (footprint_) {
-    tile.field.density.footprint = Footprints(rays, tile.ray, tile.samples.t, *footprint_);
+  if (const auto& anti_aliasing = parts_.config.effects.anti_aliasing) {
+    tile.field.density.footprint = Footprints(rays, tile.ray, tile.samples.t, *anti_aliasing);
   }
   field_.Density().Density(tile.samples.position, tile.field.density);
   KeepVisible(tile);

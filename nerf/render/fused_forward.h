@@ -8,13 +8,13 @@
 
 #include "nerf/base/stopwatch.h"
 #include "nerf/kernels/volume_rendering.h"
-#include "nerf/render/engine.h"
+#include "nerf/render/model_parts.h"
 #include "nerf/render/field_tile.h"
 #include "nerf/render/proposal_tile.h"
 
 namespace nerf {
 
-// The rays of a tile on their way, and what the way back needs.
+// The rays of a tile between their stages, and what the backward pass needs.
 struct FusedTile {
   ProposalTile proposal;
   RaySamples samples;
@@ -41,13 +41,15 @@ struct FusedTile {
   }
 };
 
-// The way of a tile of rays from their origins to their pixels.
+// A tile of rays from their origins to their pixels.
 class FusedForward {
  public:
-  explicit FusedForward(const EngineParts& parts);
+  // `parts` must outlive it.
+  explicit FusedForward(const ModelParts& parts);
 
-  // Takes over the parameters, which others change between batches.
-  void Refresh();
+  // Copies the networks' weights, which the optimiser changes between batches; hash tables are read
+  // where they are. From then on Run is safe from any thread.
+  void Refresh(const Annealing& annealing);
 
   // The rays from `first` on, as many as fill a tile. Returns the first ray that is not in it.
   std::int64_t Run(const RayBatch& rays, std::int64_t first, std::int64_t last,
@@ -63,14 +65,12 @@ class FusedForward {
                             FusedTile& tile) const;
   void KeepVisible(FusedTile& tile) const;
 
-  std::shared_ptr<OccupancyGrid> grid_;
-  MarchOptions march_;
-  std::optional<FootprintOptions> footprint_;
+  const ModelParts& parts_;
   TileField field_;
   std::optional<TileProposal> proposal_;
 };
 
-// Names the first ray of a tile whose colour is not finite, and the stage that spoilt it.
+// Names the first ray of a tile whose colour is not finite, and the stage that made it so.
 //   target  [R,3] of the tile, whose first ray is `first` of the batch
 std::string DescribeNonFinite(const FusedTile& tile, std::span<const float> target,
                               std::int64_t first);

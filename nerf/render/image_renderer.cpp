@@ -50,7 +50,7 @@ void LendRays(ViewRays& tile) {
 
 }  // namespace
 
-RenderedView RenderView(RayRenderer& renderer, const Camera& camera,
+RenderedView RenderView(const RayRenderer& renderer, const Camera& camera,
                         const Eigen::Isometry3d& normalized_from_camera,
                         const Eigen::Vector3f& background, ColorEncoding encoding,
                         const std::function<void(std::int64_t)>& progress) {
@@ -89,7 +89,7 @@ RenderedView RenderView(RayRenderer& renderer, const Camera& camera,
   return view;
 }
 
-Image RenderPreview(RayRenderer& renderer, const Camera& camera, int factor,
+Image RenderPreview(const RayRenderer& renderer, const Camera& camera, int factor,
                     const Eigen::Isometry3d& normalized_from_camera,
                     const Eigen::Vector3f& background, ColorEncoding encoding) {
   factor = std::clamp(factor, 1, std::min(camera.width, camera.height));

@@ -22,14 +22,14 @@ struct RenderedView {
 // size of the image beyond the image itself. Rays go in blocks of 4 x 4 pixels, a block in squares
 // of 2 x 2: every 16 and every 4 rays of a batch, in order, are neighbours.
 //   progress  called with the number of pixels done, after each tile; throw from it to stop
-RenderedView RenderView(RayRenderer& renderer, const Camera& camera,
+RenderedView RenderView(const RayRenderer& renderer, const Camera& camera,
                         const Eigen::Isometry3d& normalized_from_camera,
                         const Eigen::Vector3f& background, ColorEncoding encoding,
                         const std::function<void(std::int64_t)>& progress = {});
 
 // The picture of a camera from every `factor`-th ray across and down, each repeated over the pixels
 // that it stands for: a first look, in 1 / factor^2 of the time.
-Image RenderPreview(RayRenderer& renderer, const Camera& camera, int factor,
+Image RenderPreview(const RayRenderer& renderer, const Camera& camera, int factor,
                     const Eigen::Isometry3d& normalized_from_camera,
                     const Eigen::Vector3f& background, ColorEncoding encoding);
 

@@ -5,11 +5,11 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
-#include "nerf/effects/depth.h"
-#include "nerf/effects/footprint.h"
+#include "nerf/effects/depth_supervision.h"
+#include "nerf/effects/anti_aliasing.h"
 #include "nerf/field/background.h"
 #include "nerf/field/exposure.h"
-#include "nerf/field/poses.h"
+#include "nerf/field/pose_refinement.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/kernels/volume_rendering.h"
 #include "nerf/render/describe_non_finite.h"
@@ -44,24 +44,17 @@ struct LibTorchEngine::Evaluated {
   VolumeRendering pixels;
 };
 
-LibTorchEngine::LibTorchEngine(EngineParts parts)
-    : parts_(std::move(parts)), robust_(parts_.robust) {}
-
-void LibTorchEngine::SetProgress(double progress) {
-  if (parts_.robust) robust_ = parts_.robust->At(progress);
-}
-
 // The patches that samples stand for; empty where they are points.
 std::vector<float> LibTorchEngine::FootprintsOf(const RayBatch& rays,
                                                 const PackedSamples& samples) const {
-  if (!parts_.footprint) return {};
-  return Footprints(rays, samples.ray, samples.t, *parts_.footprint);
+  if (!Effects().anti_aliasing) return {};
+  return Footprints(rays, samples.ray, samples.t, *Effects().anti_aliasing);
 }
 
-torch::Tensor LibTorchEngine::SharesOf(std::span<const float> footprint) const {
+torch::Tensor LibTorchEngine::AntiAliasingWeightsOf(std::span<const float> footprint) const {
   const kernels::HashGridLayout& layout = parts_.field->Hash().Layout();
-  const std::vector<float> shares = LevelShares(layout, footprint);
-  return TensorOf(shares,
+  const std::vector<float> weights = AntiAliasingWeights(layout, footprint);
+  return TensorOf(weights,
                   {static_cast<std::int64_t>(footprint.size()),
                    static_cast<std::int64_t>(layout.levels.size())},
                   parts_.field->Dtype())
@@ -69,10 +62,10 @@ torch::Tensor LibTorchEngine::SharesOf(std::span<const float> footprint) const {
 }
 
 // Densities without gradients, a chunk of positions at a time.
-//   footprint  [S], as FootprintOptions has it; or empty
+//   footprint  [S], see Footprints; or empty
 std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
-                                             std::span<const float> footprint,
-                                             DensityFunction density) {
+                                             std::span<const float> footprint, double detail,
+                                             DensityFunction density) const {
   const torch::NoGradGuard no_grad;
   const auto size = static_cast<std::int64_t>(positions.size() / 3);
   std::vector<float> sigma(size);
@@ -81,10 +74,11 @@ std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
     const torch::Tensor chunk =
         torch::from_blob(const_cast<float*>(&positions[3 * first]), {count, 3})
             .to(parts_.field->Dtype());
-    const torch::Tensor shares =
-        footprint.empty() ? torch::Tensor() : SharesOf(footprint.subspan(first, count));
+    const torch::Tensor level_weights =
+        footprint.empty() ? torch::Tensor()
+                          : AntiAliasingWeightsOf(footprint.subspan(first, count));
     const torch::Tensor part =
-        (parts_.field.get()->*density)(chunk, shares).to(torch::kFloat).contiguous();
+        (parts_.field.get()->*density)(chunk, level_weights, detail).to(torch::kFloat).contiguous();
     std::copy_n(part.data_ptr<float>(), count, sigma.begin() + first);
   }
   return sigma;
@@ -92,42 +86,53 @@ std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
 
 // The samples in front of the point where a ray's transmittance falls below the bound: found from
 // densities alone and without gradients, so that colour and gradients are computed for no other.
-PackedSamples LibTorchEngine::VisibleSamples(const RayBatch& rays, const PackedSamples& samples) {
+PackedSamples LibTorchEngine::VisibleSamples(const RayBatch& rays, const PackedSamples& samples,
+                                              double detail) const {
   const std::vector<float> sigma =
-      Densities(samples.position, FootprintsOf(rays, samples), &RadianceField::Density);
+      Densities(samples.position, FootprintsOf(rays, samples), detail, &RadianceField::Density);
   std::vector<std::int64_t> kept(samples.Rays());
   ParallelFor(samples.Rays(), 64, [&](std::int64_t first, std::int64_t last) {
     kernels::CountVisible<float>(samples.ray_begin, sigma, samples.dt,
-                                 parts_.march.stop_transmittance, kept, first, last);
+                                 parts_.config.march.stop_transmittance, kept, first, last);
   });
   return KeepFront(samples, kept);
 }
 
 // What rays see where they meet nothing, [R,3].
-torch::Tensor LibTorchEngine::Behind(const RayBatch& rays) const {
+torch::Tensor LibTorchEngine::BackgroundOf(const RayBatch& rays) const {
   const torch::Dtype dtype = parts_.field->Dtype();
   return parts_.background
              ? parts_.background->forward(TensorOf(rays.direction, {rays.Size(), 3}, dtype))
              : TensorOf(rays.background, {rays.Size(), 3}, dtype);
 }
 
-// A ray's way from its origin to its pixel.
-//   behind  [R,3] what it sees where it meets nothing
-//   moved   the rays as refined poses have them, for gradients; null: constants
+// The same in training: a background that was laid under cut-out photographs has no exposure.
+torch::Tensor LibTorchEngine::TrainingBackground(
+    const RayBatch& rays, const std::vector<std::int64_t>& photograph) const {
+  if (!parts_.exposure || parts_.background) return BackgroundOf(rays);
+  return parts_.exposure->DivideByGains(BackgroundOf(rays),
+                                        TensorOf(photograph, {rays.Size()}, torch::kLong));
+}
+
+// A ray's path from its origin to its pixel.
+//   background  [R,3] what it sees where it meets nothing
+//   refined     the rays at refined poses, for gradients; null: constants
 LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays,
-                                                   const torch::Tensor& behind,
-                                                   const Poses::Moved* moved) {
+                                                   const torch::Tensor& background,
+                                                   const RefinedRays* refined,
+                                                   const Annealing& annealing) const {
   const torch::Dtype dtype = parts_.field->Dtype();
   Evaluated out;
   PackedSamples placed;
   if (parts_.proposal) {
-    out.proposed = ProposeSamples(rays, *parts_.proposal, parts_.proposal_options, parts_.march);
+    out.proposed = ProposeSamples(rays, *parts_.proposal, parts_.config.proposal,
+                                  parts_.config.march, annealing.proposal);
     placed = out.proposed.samples;
   } else {
-    placed = MarchRays(rays, *parts_.grid, parts_.march);
+    placed = MarchRays(rays, *parts_.grid, parts_.config.march);
   }
   out.marched = placed.Size();
-  out.samples = VisibleSamples(rays, placed);
+  out.samples = VisibleSamples(rays, placed, annealing.detail);
 
   const std::int64_t count = rays.Size();
   const std::int64_t size = out.samples.Size();
@@ -135,26 +140,27 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays,
   const torch::Tensor ray = TensorOf(out.samples.ray, {size}, torch::kLong);
   const torch::Tensor t = TensorOf(out.samples.t, {size}, dtype);
   torch::Tensor positions = TensorOf(out.samples.position, {size, 3}, dtype);
-  if (moved) {
-    // The value to the last bit as samples have it, the gradient of how they came to stand there.
-    const torch::Tensor moving = SamplePositions(moved->origin, moved->direction, ray, t);
+  if (refined) {
+    // The value to the last bit as samples have it, with the gradient of refined rays.
+    const torch::Tensor moving = SamplePositions(refined->origin, refined->direction, ray, t);
     positions = positions + (moving - moving.detach());
   }
   const std::vector<float> footprint = FootprintsOf(rays, out.samples);
   out.field = parts_.field->forward(positions, directions, ray,
-                                    footprint.empty() ? torch::Tensor() : SharesOf(footprint));
-  ScaleGradients(out.field, t, parts_.gradient_scaling.full_distance);
+                                    footprint.empty() ? torch::Tensor() : AntiAliasingWeightsOf(footprint),
+                                    annealing.detail);
+  ScaleGradients(out.field, t, parts_.config.gradient_scaling.full_distance);
 
   out.pixels =
       RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong), out.field.sigma,
-                   out.field.radiance, TensorOf(out.samples.dt, {size}, dtype), t, behind);
+                   out.field.radiance, TensorOf(out.samples.dt, {size}, dtype), t, background);
   return out;
 }
 
-RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
+RenderOutput LibTorchEngine::Render(const RayBatch& rays) const {
   const torch::NoGradGuard no_grad;
   CheckRays(rays);
-  const Evaluated out = Evaluate(rays, Behind(rays), nullptr);
+  const Evaluated out = Evaluate(rays, BackgroundOf(rays), nullptr, parts_.annealing);
   const auto to_vector = [](const torch::Tensor& tensor) {
     const torch::Tensor flat = tensor.to(torch::kFloat).contiguous();
     return std::vector<float>(flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel());
@@ -167,20 +173,20 @@ RenderOutput LibTorchEngine::Render(const RayBatch& rays) {
   for (std::size_t r = 0; r < result.depth.size(); ++r) {
     if (result.opacity[r] > 0) {
       result.depth[r] = std::clamp(result.depth[r] / result.opacity[r],
-                                   static_cast<float>(parts_.march.near_distance),
-                                   static_cast<float>(parts_.march.far_distance));
+                                   static_cast<float>(parts_.config.march.near_distance),
+                                   static_cast<float>(parts_.config.march.far_distance));
     }
   }
   return result;
 }
 
-// As nerf/effects/depth.h defines it: what the samples cost is rendered like a colour, before the
+// As nerf/effects/depth_supervision.h defines it: what the samples cost is rendered like a colour, before the
 // cost of seeing nothing.
 torch::Tensor LibTorchEngine::DepthLoss(const TargetBatch& batch, const Evaluated& out) const {
   const torch::Dtype dtype = parts_.field->Dtype();
   const std::int64_t count = batch.rays.Size(), size = out.samples.Size();
   const std::vector<float> costs =
-      CostsOfSamples(out.samples.t, out.samples.ray, batch.distance, *parts_.depth);
+      DepthCosts(out.samples.t, out.samples.ray, batch.distance, *Effects().depth_supervision);
   const torch::Tensor of_sample = TensorOf(costs, {size, 1}, dtype).expand({size, 3}).clone();
   const torch::Tensor of_nothing =
       (TensorOf(batch.distance, {count, 1}, dtype) > 0).to(dtype).expand({count, 3}).clone();
@@ -189,40 +195,36 @@ torch::Tensor LibTorchEngine::DepthLoss(const TargetBatch& batch, const Evaluate
                    of_sample, TensorOf(out.samples.dt, {size}, dtype),
                    TensorOf(out.samples.t, {size}, dtype), of_nothing)
           .rgb;
-  return parts_.depth->weight * paid.mean();
+  return Effects().depth_supervision->weight * paid.mean();
 }
 
-StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
-  if (batch.rays.Size() == 0) return {};  // the mean over nothing is no number
+StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch,
+                                               const StepContext& context) {
+  if (batch.rays.Size() == 0) return {};  // the mean over nothing is not a number
   const torch::Dtype dtype = parts_.field->Dtype();
   const std::int64_t count = batch.rays.Size();
   CheckRays(batch.rays);
   Evaluated out;
-  RayBatch refined;  // autograd reads it until the way back is over
+  RayBatch refined_batch;  // autograd reads it until the backward pass is over
   const auto photograph = [&] { return TensorOf(batch.photograph, {count}, torch::kLong); };
-  const auto behind = [&](const RayBatch& rays) {
-    const bool exposes = parts_.exposure && !parts_.background;
-    return exposes ? parts_.exposure->Unexposed(Behind(rays), photograph()) : Behind(rays);
-  };
-  if (parts_.poses) {
-    const Poses::Moved moved =
-        parts_.poses->forward(TensorOf(batch.rays.origin, {count, 3}, dtype),
-                              TensorOf(batch.rays.direction, {count, 3}, dtype), photograph());
-    refined = Poses::WithMoved(batch.rays, moved);
-    out = Evaluate(refined, behind(refined), &moved);
+  if (parts_.pose_refinement) {
+    const RefinedRays refined = parts_.pose_refinement->forward(
+        TensorOf(batch.rays.origin, {count, 3}, dtype),
+        TensorOf(batch.rays.direction, {count, 3}, dtype), photograph());
+    refined_batch = WithRefinedRays(batch.rays, refined);
+    out = Evaluate(refined_batch, TrainingBackground(refined_batch, batch.photograph), &refined,
+                   context.annealing);
   } else {
-    out = Evaluate(batch.rays, behind(batch.rays), nullptr);
+    out = Evaluate(batch.rays, TrainingBackground(batch.rays, batch.photograph), nullptr,
+                   context.annealing);
   }
-  const torch::Tensor target =
-      TensorOf(batch.rgb, {batch.rays.Size(), 3}, out.pixels.rgb.scalar_type());
+  const torch::Tensor target = TensorOf(batch.rgb, {count, 3}, out.pixels.rgb.scalar_type());
   torch::Tensor rgb = out.pixels.rgb;
-  if (parts_.exposure) {
-    rgb = parts_.exposure->forward(rgb, photograph(), target);
-  }
-  torch::Tensor loss = ColorLoss(rgb, target, parts_.loss, robust_);
-  if (parts_.depth && !batch.distance.empty()) {
-    loss = loss + DepthLoss(batch, out);
-  }
+  if (parts_.exposure) rgb = parts_.exposure->forward(rgb, photograph(), target);
+  std::optional<RobustOptions> robust;
+  if (Effects().robust) robust = Effects().robust->At(context.progress);
+  torch::Tensor loss = ColorLoss(rgb, target, parts_.config.loss, robust);
+  if (Effects().depth_supervision && !batch.distance.empty()) loss = loss + DepthLoss(batch, out);
   StepResult result;
   result.loss = loss.item<double>();
   if (!std::isfinite(result.loss)) {
@@ -231,14 +233,14 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   }
   torch::Tensor total = loss;
   if (parts_.proposal) {
-    total = loss + ProposalLoss(out.proposed, out.samples, out.field.sigma, parts_.proposal_options,
-                                parts_.march);
+    total = loss + ProposalLoss(out.proposed, out.samples, out.field.sigma,
+                                parts_.config.proposal, parts_.config.march);
   }
-  // A batch whose rays meet no occupied cell has no parameters to blame.
+  // A batch whose rays meet no occupied cell depends on no parameter.
   if (total.requires_grad()) total.backward();
   torch::Tensor of_ray = (rgb.detach() - target).square().mean(1);
   result.squared_error = of_ray.mean().item<double>();
-  if (robust_) of_ray = of_ray * PullOfRays(rgb, target, parts_.loss, *robust_);
+  if (robust) of_ray = of_ray * RobustRayWeights(rgb, target, parts_.config.loss, *robust);
   of_ray = of_ray.to(torch::kFloat).contiguous();
   const auto ray_error = Span<const float>(of_ray);
   result.ray_error.assign(ray_error.begin(), ray_error.end());
@@ -247,10 +249,10 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch) {
   return result;
 }
 
-void LibTorchEngine::UpdateOccupancy(std::int64_t step, std::uint64_t seed) {
+void LibTorchEngine::UpdateOccupancy(const StepContext& context) {
   if (parts_.proposal) return;
-  parts_.grid->Update(step, seed, [this](std::span<const float> positions) {
-    return Densities(positions, {}, &RadianceField::ContractedDensity);
+  parts_.grid->Update(context.step, context.seed, [&](std::span<const float> positions) {
+    return Densities(positions, {}, context.annealing.detail, &RadianceField::ContractedDensity);
   });
 }
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "nerf/field/poses.h"
+#include "nerf/field/pose_refinement.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/render/engine.h"
 #include "nerf/render/proposal_sampling.h"
@@ -16,28 +16,33 @@ namespace nerf {
 // after field->to(torch::kDouble), in double.
 class LibTorchEngine : public Engine {
  public:
-  explicit LibTorchEngine(EngineParts parts);
+  // `parts` must outlive it.
+  explicit LibTorchEngine(const ModelParts& parts) : parts_(parts) {}
 
-  RenderOutput Render(const RayBatch& rays) override;
-  StepResult AccumulateGradients(const TargetBatch& batch) override;
-  void SetProgress(double progress) override;
-  void UpdateOccupancy(std::int64_t step, std::uint64_t seed) override;
+  using Engine::AccumulateGradients;
+  RenderOutput Render(const RayBatch& rays) const override;
+  StepResult AccumulateGradients(const TargetBatch& batch, const StepContext& context) override;
+  void UpdateOccupancy(const StepContext& context) override;
 
  private:
   struct Evaluated;
+  const EffectsOptions& Effects() const { return parts_.config.effects; }
   torch::Tensor DepthLoss(const TargetBatch& batch, const Evaluated& out) const;
-  torch::Tensor Behind(const RayBatch& rays) const;
-  Evaluated Evaluate(const RayBatch& rays, const torch::Tensor& behind, const Poses::Moved* moved);
-  PackedSamples VisibleSamples(const RayBatch& rays, const PackedSamples& samples);
+  torch::Tensor BackgroundOf(const RayBatch& rays) const;
+  torch::Tensor TrainingBackground(const RayBatch& rays,
+                                   const std::vector<std::int64_t>& photograph) const;
+  Evaluated Evaluate(const RayBatch& rays, const torch::Tensor& background,
+                     const RefinedRays* refined, const Annealing& annealing) const;
+  PackedSamples VisibleSamples(const RayBatch& rays, const PackedSamples& samples,
+                               double detail) const;
   std::vector<float> FootprintsOf(const RayBatch& rays, const PackedSamples& samples) const;
-  torch::Tensor SharesOf(std::span<const float> footprint) const;
+  torch::Tensor AntiAliasingWeightsOf(std::span<const float> footprint) const;
   using DensityFunction = torch::Tensor (RadianceField::*)(const torch::Tensor&,
-                                                           const torch::Tensor&);
+                                                           const torch::Tensor&, double);
   std::vector<float> Densities(std::span<const float> positions, std::span<const float> footprint,
-                               DensityFunction density);
+                               double detail, DensityFunction density) const;
 
-  EngineParts parts_;
-  std::optional<RobustOptions> robust_;  // as it is now
+  const ModelParts& parts_;
 };
 
 }  // namespace nerf

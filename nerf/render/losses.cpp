@@ -10,7 +10,7 @@ torch::Tensor LossOfRays(const torch::Tensor& predicted, const torch::Tensor& ta
   TORCH_CHECK(predicted.sizes() == target.sizes(), "ColorLoss: predicted ", predicted.sizes(),
               " and target ", target.sizes(), " differ in shape");
   const torch::Tensor loss =
-      options.kind == "mse"
+      options.kind == LossKind::kMse
           ? torch::mse_loss(predicted, target, at::Reduction::None)
           : torch::huber_loss(predicted, target, at::Reduction::None, options.huber_delta) /
                 options.huber_delta;
@@ -25,10 +25,10 @@ torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& tar
   return (robust ? RobustLoss(of_ray, *robust) : of_ray).mean();
 }
 
-torch::Tensor PullOfRays(const torch::Tensor& predicted, const torch::Tensor& target,
+torch::Tensor RobustRayWeights(const torch::Tensor& predicted, const torch::Tensor& target,
                          const LossOptions& options, const RobustOptions& robust) {
   const torch::NoGradGuard no_grad;
-  return RobustPull(LossOfRays(predicted, target, options), robust);
+  return RobustWeight(LossOfRays(predicted, target, options), robust);
 }
 
 }  // namespace nerf

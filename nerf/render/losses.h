@@ -15,8 +15,8 @@ namespace nerf {
 torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& target,
                         const LossOptions& options, const std::optional<RobustOptions>& robust);
 
-// The part of each ray's pull that a robust loss leaves, [R]: RobustPull(l). Without gradients.
-torch::Tensor PullOfRays(const torch::Tensor& predicted, const torch::Tensor& target,
+// The weight of each ray's gradients under a robust loss, [R]: RobustWeight(l). Without gradients.
+torch::Tensor RobustRayWeights(const torch::Tensor& predicted, const torch::Tensor& target,
                          const LossOptions& options, const RobustOptions& robust);
 
 }  // namespace nerf

@@ -31,18 +31,14 @@ void MiddleRays(const RayBatch& rays, std::int64_t first, std::int64_t last, std
 
 }  // namespace
 
-PacketPlacement::PacketPlacement(std::shared_ptr<OccupancyGrid> grid,
-                                 std::shared_ptr<ProposalField> proposal, const MarchOptions& march,
-                                 ProposalOptions proposal_options, const RenderQuality& quality)
-    : grid_(std::move(grid)), march_(march), packet_(quality.packet), samples_(quality.samples) {
-  if (proposal) {
-    proposal_.emplace(std::move(proposal),
-                      WithSamples(std::move(proposal_options), quality.samples), march);
-  }
-}
-
-void PacketPlacement::Refresh() {
-  if (proposal_) proposal_->Refresh();
+PacketPlacement::PacketPlacement(const ModelParts& parts, const RenderQuality& quality)
+    : grid_(*parts.grid),
+      march_(parts.config.march),
+      packet_(quality.packet),
+      samples_(quality.samples) {
+  if (!parts.proposal) return;
+  proposal_.emplace(*parts.proposal, WithSamples(parts.config.proposal, quality.samples), march_);
+  proposal_->Refresh(parts.annealing.proposal);
 }
 
 // Sets ray k of the tile on its way through the intervals of ray `asked` of the proposal's tile.
@@ -68,7 +64,7 @@ void PacketPlacement::Place(const RayBatch& rays, std::int64_t first, std::int64
     s.dt.clear();
     for (std::int64_t k = 0; k < count; ++k) {
       const std::int64_t begin = s.Size();
-      MarchRay(rays, first + k, *grid_, march_, s);
+      MarchRay(rays, first + k, grid_, march_, s);
       tile.of_ray[k] = {begin, s.Size()};
     }
     return;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "nerf/render/model_parts.h"
 #include "nerf/render/proposal_tile.h"
 #include "nerf/render/render_quality.h"
 #include "nerf/sampling/occupancy_grid.h"
@@ -29,12 +30,8 @@ struct PlacedTile {
 // ray through the middle of their packet finds matter.
 class PacketPlacement {
  public:
-  // Where there is a proposal (it may be null) it places the samples, else the grid does.
-  PacketPlacement(std::shared_ptr<OccupancyGrid> grid, std::shared_ptr<ProposalField> proposal,
-                  const MarchOptions& march, ProposalOptions proposal_options,
-                  const RenderQuality& quality);
-
-  void Refresh();
+  // `parts` must outlive it, and not change.
+  PacketPlacement(const ModelParts& parts, const RenderQuality& quality);
 
   // Rays [first, last) of a batch, every quality.packet of them, in order, neighbours.
   void Place(const RayBatch& rays, std::int64_t first, std::int64_t last, PlacedTile& tile) const;
@@ -50,9 +47,9 @@ class PacketPlacement {
   void PackRay(const RayBatch& rays, std::int64_t r, std::int64_t asked, std::int64_t k,
                PlacedTile& tile) const;
 
-  std::shared_ptr<OccupancyGrid> grid_;
+  const OccupancyGrid& grid_;
   std::optional<TileProposal> proposal_;
-  MarchOptions march_;
+  const MarchOptions& march_;
   std::int64_t packet_, samples_;
 };
 

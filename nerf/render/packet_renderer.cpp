@@ -7,7 +7,7 @@
 
 #include "nerf/base/parallel.h"
 #include "nerf/base/stopwatch.h"
-#include "nerf/effects/footprint.h"
+#include "nerf/effects/anti_aliasing.h"
 
 namespace nerf {
 namespace {
@@ -51,17 +51,14 @@ struct PacketRenderer::Tile {
   double sampling_seconds = 0;
 };
 
-PacketRenderer::PacketRenderer(std::shared_ptr<RadianceField> field,
-                               std::shared_ptr<OccupancyGrid> grid,
-                               std::shared_ptr<ProposalField> proposal, const MarchOptions& march,
-                               ProposalOptions proposal_options, const RenderQuality& quality,
-                               kernels::Precision precision,
-                               const std::optional<FootprintOptions>& footprint)
-    : field_(std::move(field), precision),
-      placement_(std::move(grid), std::move(proposal), march, std::move(proposal_options), quality),
-      march_(march),
-      quality_(quality),
-      footprint_(footprint) {}
+PacketRenderer::PacketRenderer(const ModelParts& parts, const RenderQuality& quality)
+    : parts_(parts),
+      field_(*parts.field, parts.config.train.precision),
+      placement_(parts, quality),
+      quality_(quality) {
+  field_.Refresh(parts.annealing.detail);
+  if (parts.background) background_ = parts.background->Map();
+}
 
 // Sets the rays of a tile at their first samples.
 void PacketRenderer::Begin(const RayBatch& rays, std::int64_t first, std::int64_t last,
@@ -119,14 +116,14 @@ void PacketRenderer::Shade(const RayBatch& rays, std::int64_t first, Tile& tile)
 // Densities of the samples that the tile goes on by.
 void PacketRenderer::Evaluate(const RayBatch& rays, std::int64_t first, Tile& tile) const {
   tile.field.density.footprint.clear();  // the tile may be another renderer's
-  if (footprint_) {
+  if (const auto& options = parts_.config.effects.anti_aliasing) {
     std::vector<std::int64_t> ray;
     std::vector<float> t;
     for (std::size_t i = 0; i < tile.sample.size(); ++i) {
       ray.push_back(first + tile.ray[i]);
       t.push_back(tile.placed.samples.t[tile.sample[i]]);
     }
-    tile.field.density.footprint = Footprints(rays, ray, t, *footprint_);
+    tile.field.density.footprint = Footprints(rays, ray, t, *options);
   }
   field_.Density().Density(tile.position, tile.field.density);
   tile.evaluated += static_cast<std::int64_t>(tile.sample.size());
@@ -206,17 +203,35 @@ void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& 
   Shade(rays, first, tile);
 }
 
-RenderOutput PacketRenderer::Render(const RayBatch& rays) {
-  CheckRays(rays);
-  field_.Refresh();
-  placement_.Refresh();
+// Writes the pixels of a tile whose rays are through.
+void PacketRenderer::Finish(const RayBatch& rays, std::int64_t first, const Tile& tile,
+                            RenderOutput& out) const {
+  const auto near = static_cast<float>(parts_.config.march.near_distance);
+  const auto far = static_cast<float>(parts_.config.march.far_distance);
+  for (std::size_t k = 0; k < tile.rays.size(); ++k) {
+    const Tile::Ray& ray = tile.rays[k];
+    const std::int64_t r = first + static_cast<std::int64_t>(k);
+    // The light that is left where a ray is given up, and weight without a colour, take on the
+    // colour of the rest.
+    const bool given_up = ray.next < ray.end;
+    const float opacity = given_up ? 1 : static_cast<float>(-std::expm1(-ray.optical_depth));
+    const float scale = ray.shaded > 0 ? opacity / ray.shaded : 0.0f;
+    const float through = ray.shaded > 0 ? 1 - opacity : 1.0f;
+    for (int c = 0; c < 3; ++c) {
+      out.rgb[3 * r + c] = scale * ray.rgb[c] + through * rays.background[3 * r + c];
+    }
+    out.opacity[r] = opacity;
+    const auto met = static_cast<float>(-std::expm1(-ray.optical_depth));
+    out.depth[r] = met > 0 ? std::clamp(ray.weighted_t / met, near, far) : 0.0f;
+  }
+}
+
+RenderOutput PacketRenderer::RenderRays(const RayBatch& rays) const {
   const std::int64_t count = rays.Size();
   RenderOutput out;
   out.rgb.resize(3 * count);
   out.opacity.resize(count);
   out.depth.resize(count);
-  const auto near = static_cast<float>(march_.near_distance);
-  const auto far = static_cast<float>(march_.far_distance);
   std::atomic<std::int64_t> samples = 0;
   std::mutex adding;
   ParallelForEach((count + kTileRays - 1) / kTileRays, [&](std::int64_t part) {
@@ -228,23 +243,7 @@ RenderOutput PacketRenderer::Render(const RayBatch& rays) {
     BeginMissed(rays, first, tile);
     while (!tile.alive.empty()) Advance(rays, first, tile);
     ShadeFaint(rays, first, tile);
-
-    for (std::int64_t k = 0; k < last - first; ++k) {
-      const Tile::Ray& ray = tile.rays[k];
-      const std::int64_t r = first + k;
-      // What light is left where a ray is given up, and weight without a colour, take on the colour
-      // of the rest.
-      const bool given_up = ray.next < ray.end;
-      const float opacity = given_up ? 1 : static_cast<float>(-std::expm1(-ray.optical_depth));
-      const float scale = ray.shaded > 0 ? opacity / ray.shaded : 0.0f;
-      const float through = ray.shaded > 0 ? 1 - opacity : 1.0f;
-      for (int c = 0; c < 3; ++c) {
-        out.rgb[3 * r + c] = scale * ray.rgb[c] + through * rays.background[3 * r + c];
-      }
-      out.opacity[r] = opacity;
-      const auto met = static_cast<float>(-std::expm1(-ray.optical_depth));
-      out.depth[r] = met > 0 ? std::clamp(ray.weighted_t / met, near, far) : 0.0f;
-    }
+    Finish(rays, first, tile, out);
     samples += tile.evaluated;
     StageSeconds seconds = tile.field.density.seconds;
     seconds.sampling = tile.sampling_seconds;
@@ -256,6 +255,11 @@ RenderOutput PacketRenderer::Render(const RayBatch& rays) {
   });
   out.samples = samples;
   return out;
+}
+
+RenderOutput PacketRenderer::Render(const RayBatch& rays) const {
+  CheckRays(rays);
+  return parts_.background ? RenderRays(WithBackground(rays, background_)) : RenderRays(rays);
 }
 
 }  // namespace nerf

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "nerf/effects/footprint.h"
+#include "nerf/effects/anti_aliasing.h"
 #include "nerf/render/field_tile.h"
 #include "nerf/render/packet_placement.h"
 #include "nerf/render/ray_renderer.h"
@@ -20,14 +20,10 @@ namespace nerf {
 // one is: what is left out moves weight, and never loses it.
 class PacketRenderer : public RayRenderer {
  public:
-  // Where there is a proposal (it may be null) it places the samples, else the grid does.
-  PacketRenderer(std::shared_ptr<RadianceField> field, std::shared_ptr<OccupancyGrid> grid,
-                 std::shared_ptr<ProposalField> proposal, const MarchOptions& march,
-                 ProposalOptions proposal_options, const RenderQuality& quality,
-                 kernels::Precision precision = kernels::Precision::kFloat,
-                 const std::optional<FootprintOptions>& footprint = {});
+  // `parts` must outlive it, and not change.
+  PacketRenderer(const ModelParts& parts, const RenderQuality& quality);
 
-  RenderOutput Render(const RayBatch& rays) override;
+  RenderOutput Render(const RayBatch& rays) const override;
 
  private:
   struct Tile;
@@ -38,11 +34,14 @@ class PacketRenderer : public RayRenderer {
   void Evaluate(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const;
 
+  RenderOutput RenderRays(const RayBatch& rays) const;
+  void Finish(const RayBatch& rays, std::int64_t first, const Tile& tile, RenderOutput& out) const;
+
+  const ModelParts& parts_;
   TileField field_;
   PacketPlacement placement_;
-  MarchOptions march_;
   RenderQuality quality_;
-  std::optional<FootprintOptions> footprint_;
+  BackgroundMap background_;  // where it is learned
 };
 
 }  // namespace nerf

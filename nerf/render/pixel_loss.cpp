@@ -11,7 +11,7 @@ struct ChannelLoss {
   double value, derivative;
 };
 ChannelLoss LossOf(double error, const LossOptions& options) {
-  if (options.kind == "mse") return {error * error, 2 * error};
+  if (options.kind == LossKind::kMse) return {error * error, 2 * error};
   const double size = std::fabs(error), delta = options.huber_delta;
   if (size <= delta) return {0.5 * error * error / delta, error / delta};
   return {size - 0.5 * delta, error > 0 ? 1.0 : -1.0};
@@ -50,7 +50,7 @@ bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int6
     for (int c = 0; c < 3; ++c) {
       const float target = batch.rgb[3 * (first + r) + c];
       shown[c] = static_cast<double>(gain ? gain[c] * rgb[3 * r + c] : rgb[3 * r + c]);
-      // A pixel that is white to the end of its scale is at least that bright.
+      // A clipped pixel is at least that bright.
       const bool reached = gain && model.saturates && target >= 1 && shown[c] > 1;
       const double error = reached ? 0.0 : shown[c] - static_cast<double>(target);
       const ChannelLoss of_channel = LossOf(error, model.loss);
@@ -58,26 +58,26 @@ bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int6
       squared += error * error;
       dL_dshown[c] = of_channel.derivative / channels;
     }
-    double pull = 1;  // of the ray's loss that is left
+    double weight = 1;  // of the ray's gradients
     if (model.robust) {
       const double mean = of_ray / 3;
       of_ray = 3 * RobustLoss(mean, *model.robust);
-      pull = RobustPull(mean, *model.robust);
+      weight = RobustWeight(mean, *model.robust);
     }
     for (int c = 0; c < 3; ++c) {
       dL_drgb[3 * r + c] =
-          static_cast<float>(pull * dL_dshown[c] * static_cast<double>(gain ? gain[c] : 1.0f));
+          static_cast<float>(weight * dL_dshown[c] * static_cast<double>(gain ? gain[c] : 1.0f));
       if (!gain) continue;
       double exposed = shown[c];  // without what was laid under it afterwards
       if (model.unexposed) {
         exposed -= static_cast<double>(gain[c] * (1 - opacity[r]) *
                                        batch.rays.background[3 * (first + r) + c]);
       }
-      dL_dlog_gain[photograph + c] += pull * dL_dshown[c] * exposed;
+      dL_dlog_gain[photograph + c] += weight * dL_dshown[c] * exposed;
     }
     of_tile += of_ray;
     squared_error += squared;
-    ray_error[first + r] = static_cast<float>(pull * squared / 3);
+    ray_error[first + r] = static_cast<float>(weight * squared / 3);
   }
   loss += of_tile;
   return std::isfinite(of_tile);

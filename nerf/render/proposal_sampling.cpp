@@ -78,7 +78,8 @@ PackedSamples PackIntervals(const RayBatch& rays, const MarchOptions& march,
 }
 
 ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
-                               const ProposalOptions& options, const MarchOptions& march) {
+                               const ProposalOptions& options, const MarchOptions& march,
+                               double exponent) {
   const std::int64_t count = rays.Size(), coarse = options.intervals, fine = options.samples;
   ProposedSamples out;
   out.coarse_edges.resize(count * (coarse + 1));
@@ -99,12 +100,12 @@ ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
                                      own(asked.dt, {count * coarse}, dtype));
 
   const torch::Tensor weights = out.coarse_weights.detach().to(torch::kFloat).contiguous();
-  const auto trust = static_cast<float>(proposal.Trust());
   out.edges.resize(count * (fine + 1));
   ParallelFor(count, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
       CutByWeights(std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1),
-                   Span<const float>(weights).subspan(r * coarse, coarse), trust,
+                   Span<const float>(weights).subspan(r * coarse, coarse),
+                   static_cast<float>(exponent),
                    static_cast<float>(options.padding), rays.jitter[r],
                    std::span(out.edges).subspan(r * (fine + 1), fine + 1));
     }

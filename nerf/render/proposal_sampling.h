@@ -24,9 +24,10 @@ PackedSamples PackIntervals(const RayBatch& rays, const MarchOptions& march,
                             const std::vector<float>& edges, std::int64_t intervals);
 
 // Asks the proposal at intervals of equal length in contracted space, and cuts each ray anew by its
-// weights. The places of the samples carry no gradient.
+// weights to the power of `exponent`. The places of the samples carry no gradient.
 ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
-                               const ProposalOptions& options, const MarchOptions& march);
+                               const ProposalOptions& options, const MarchOptions& march,
+                               double exponent = 1);
 
 // Mean over rays of the proposal's loss and of the distortion, each times its weight in the
 // options.

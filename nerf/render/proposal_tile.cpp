@@ -8,15 +8,16 @@
 
 namespace nerf {
 
-TileProposal::TileProposal(std::shared_ptr<ProposalField> proposal, const ProposalOptions& options,
+TileProposal::TileProposal(const ProposalField& proposal, const ProposalOptions& options,
                            const MarchOptions& march)
-    : proposal_(std::move(proposal)),
+    : proposal_(proposal),
       options_(options),
       march_(march),
-      density_(proposal_->Hash(), proposal_->Network()) {}
+      density_(proposal_.Hash(), proposal_.Network()) {}
 
-void TileProposal::Refresh() {
-  density_.Refresh(std::vector<float>(proposal_->Hash().Layout().levels.size(), 1.0f));
+void TileProposal::Refresh(double exponent) {
+  exponent_ = static_cast<float>(exponent);
+  density_.Refresh(std::vector<float>(proposal_.Hash().Layout().levels.size(), 1.0f));
 }
 
 void TileProposal::Cut(const RayBatch& rays, std::int64_t first, std::int64_t last,
@@ -44,9 +45,8 @@ void TileProposal::Cut(const RayBatch& rays, std::int64_t first, std::int64_t la
   kernels::WeightsForward<float>(tile.ray_begin, tile.density.sigma, tile.dt, tile.weights, 0,
                                  count);
 
-  const auto trust = static_cast<float>(proposal_->Trust());
   for (std::int64_t k = 0; k < count; ++k) {
-    CutByWeights(coarse_edges(k), std::span(tile.weights).subspan(k * coarse, coarse), trust,
+    CutByWeights(coarse_edges(k), std::span(tile.weights).subspan(k * coarse, coarse), exponent_,
                  static_cast<float>(options_.padding), rays.jitter[first + k],
                  std::span(tile.edges).subspan(k * (fine + 1), fine + 1));
   }

@@ -25,10 +25,13 @@ struct ProposalTile {
 // ProposeSamples and ProposalLoss (proposal_sampling.h) for tiles of rays.
 class TileProposal {
  public:
-  TileProposal(std::shared_ptr<ProposalField> proposal, const ProposalOptions& options,
+  // The network must outlive it.
+  TileProposal(const ProposalField& proposal, const ProposalOptions& options,
                const MarchOptions& march);
 
-  void Refresh();
+  // Copies the network's weights, which the optimiser changes between batches.
+  //   exponent  of the proposal's weights, in [0,1]
+  void Refresh(double exponent);
 
   // Cuts rays [first, last) into options.samples intervals each: tile.edges.
   void Cut(const RayBatch& rays, std::int64_t first, std::int64_t last, ProposalTile& tile) const;
@@ -52,7 +55,8 @@ class TileProposal {
   int IntervalsPerRay() const { return options_.intervals; }
 
  private:
-  std::shared_ptr<ProposalField> proposal_;
+  const ProposalField& proposal_;
+  float exponent_ = 1;
   ProposalOptions options_;
   MarchOptions march_;
   TileDensity density_;

@@ -18,11 +18,12 @@ struct RenderOutput {
   StageSeconds seconds;        // nothing where the renderer does not take its stages' time
 };
 
-// Anything that turns rays into colours.
+// Anything that turns rays into colours. Rendering changes nothing: it is safe from any thread as long
+// as nobody changes the model.
 class RayRenderer {
  public:
   virtual ~RayRenderer() = default;
-  virtual RenderOutput Render(const RayBatch& rays) = 0;
+  virtual RenderOutput Render(const RayBatch& rays) const = 0;
 };
 
 }  // namespace nerf

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/random.h"
 #include "nerf/sampling/contraction.h"
@@ -21,23 +20,6 @@ constexpr int kBlock = 4;
 constexpr std::uint8_t kFarthestBlock = 255;
 
 }  // namespace
-
-void OccupancyOptions::Check() const {
-  if (resolution < 2 || resolution > 512) {
-    throw InputError("config: occupancy.resolution is {}; use 2 to 512", resolution);
-  }
-  if (!(decay > 0 && decay < 1)) {
-    throw InputError("config: occupancy.decay is {}; use a value between 0 and 1", decay);
-  }
-  if (!(threshold > 0 && threshold < 1)) {
-    throw InputError("config: occupancy.threshold is {}; use a value between 0 and 1", threshold);
-  }
-  if (warmup_steps < 0) throw InputError("config: occupancy.warmup_steps must not be negative");
-  if (coarse_to_fine_steps < 0) {
-    throw InputError("config: occupancy.coarse_to_fine_steps must not be negative");
-  }
-  if (update_every < 1) throw InputError("config: occupancy.update_every must be at least 1");
-}
 
 OccupancyGrid::OccupancyGrid(const OccupancyOptions& options, float step_length)
     : options_(options), step_length_(step_length) {

@@ -6,19 +6,31 @@
 #include <span>
 #include <vector>
 
+#include "nerf/base/options.h"
+
 namespace nerf {
 
 struct OccupancyOptions {
-  int resolution = 128;     // cells along an axis of contracted space
-  double decay = 0.8;       // of a cell's remembered density each time it is drawn again
-  double threshold = 0.03;  // opacity of one marching step at which a cell counts as occupied
-  int warmup_steps = 256;   // training steps during which empty cells are drawn as often as others
-  int update_every = 16;    // training steps between updates
-  // Training steps until the field shows full detail (RadianceField::SetDetail). A proposal field
-  // needs no such thing: it is coarse itself.
+  int resolution = 128;
+  double decay = 0.8;
+  double threshold = 0.03;
+  int warmup_steps = 256;
+  int update_every = 16;
   int coarse_to_fine_steps = 1000;
 
-  void Check() const;
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("resolution", o.resolution, "cells", Between(2, 512), "along an axis of contracted space");
+    option("decay", o.decay, "", StrictlyBetween(0, 1),
+           "of a cell's remembered density each time that it is drawn again");
+    option("threshold", o.threshold, "opacity", StrictlyBetween(0, 1),
+           "of one marching step at which a cell counts as occupied");
+    option("warmup_steps", o.warmup_steps, "steps", AtLeast(0),
+           "during which empty cells are drawn as often as others");
+    option("update_every", o.update_every, "steps", AtLeast(1), "between updates of the grid");
+    option("coarse_to_fine_steps", o.coarse_to_fine_steps, "steps", AtLeast(0),
+           "until the field shows full detail; not where a proposal network places the samples");
+  }
 };
 
 // Remembers where contracted space may hold matter, so that rays step over the rest.

@@ -38,7 +38,7 @@ void EqualIntervals(const RayBatch& rays, std::int64_t r, const MarchOptions& op
     const float behind_near = std::min(DistanceOfPlace(place), far - near);
     const float dt_dplace = place < 1 ? 1 : behind_near * behind_near;
     const Eigen::Vector3f x = origin + (near + behind_near) * direction;
-    const float speed = dt_dplace * (options.IsUnbounded() ? ContractedSpeed(x, direction) : 1);
+    const float speed = dt_dplace * (options.unbounded ? ContractedSpeed(x, direction) : 1);
     if (k > 0) length[k] = length[k - 1] + 0.5f * (before + speed) * step;
     before = speed;
   }
@@ -104,7 +104,7 @@ void PackIntervalsOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions
   // In the unit ball nothing is contracted. A ray that misses it has intervals of no length where
   // it begins, which may be anywhere: encodings want places inside.
   const auto in_space = [&](const Eigen::Vector3f& x) -> Eigen::Vector3f {
-    return options.IsUnbounded() ? Contract(x) : x.cwiseMax(-1.0f).cwiseMin(1.0f);
+    return options.unbounded ? Contract(x) : x.cwiseMax(-1.0f).cwiseMin(1.0f);
   };
   for (std::size_t i = 0; i < t.size(); ++i) {
     t[i] = 0.5f * (edges[i] + edges[i + 1]);

@@ -91,7 +91,7 @@ void March(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
 RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& options) {
   const auto near = static_cast<float>(options.near_distance);
   const auto far = static_cast<float>(options.far_distance);
-  if (options.IsUnbounded()) return {near, far};
+  if (options.unbounded) return {near, far};
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
   const float middle = -origin.dot(direction);
   // From the point of the ray that is nearest to the centre, so that far cameras lose no digits.
@@ -104,32 +104,20 @@ RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& op
 
 void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
               const MarchOptions& options, RaySamples& out) {
-  if (options.IsUnbounded()) return March<Contracted>(rays, r, grid, options, out);
+  if (options.unbounded) return March<Contracted>(rays, r, grid, options, out);
   March<UnitBall>(rays, r, grid, options, out);
 }
 
 void MarchOptions::Check() const {
-  if (sampler != "auto" && sampler != "occupancy" && sampler != "proposal") {
-    throw InputError("config: march.sampler is \"{}\"; use \"auto\", \"occupancy\" or \"proposal\"",
-                     sampler);
-  }
-  if (!(near_distance >= 0 && near_distance < far_distance && far_distance <= 1e8)) {
-    throw InputError(
-        "config: march.near_distance {} and march.far_distance {} must satisfy "
-        "0 <= near < far <= 1e8",
-        near_distance, far_distance);
-  }
-  if (steps_per_unit < 1 || steps_per_unit > 4096) {
-    throw InputError("config: march.steps_per_unit is {}; use 1 to 4096", steps_per_unit);
-  }
-  if (!(stop_transmittance > 0 && stop_transmittance < 1)) {
-    throw InputError("config: march.stop_transmittance is {}; use a value between 0 and 1",
-                     stop_transmittance);
-  }
+  if (near_distance < far_distance) return;
+  throw InputError(
+      "config: march.near_distance {} and march.far_distance {} must satisfy near < far",
+      near_distance, far_distance);
 }
 
 bool UsesProposal(const MarchOptions& options, bool scene_has_alpha) {
-  return options.sampler == "auto" ? !scene_has_alpha : options.sampler == "proposal";
+  return options.sampler == SamplerKind::kAuto ? !scene_has_alpha
+                                               : options.sampler == SamplerKind::kProposal;
 }
 
 PackedSamples MarchRays(const RayBatch& rays, const OccupancyGrid& grid,

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
+
+#include "nerf/base/options.h"
 
 #include "nerf/geometry/rays.h"
 #include "nerf/sampling/occupancy_grid.h"
@@ -10,21 +13,44 @@
 
 namespace nerf {
 
+// What places the samples of a ray.
+enum class SamplerKind {
+  kAuto,       // the grid for objects cut out by alpha, whose surroundings are empty, else a proposal
+  kOccupancy,  // the occupancy grid
+  kProposal,   // a proposal network
+};
+template <>
+struct EnumNames<SamplerKind> {
+  static constexpr std::pair<SamplerKind, std::string_view> kNames[] = {
+      {SamplerKind::kAuto, "auto"},
+      {SamplerKind::kOccupancy, "occupancy"},
+      {SamplerKind::kProposal, "proposal"}};
+};
+
 struct MarchOptions {
-  // What places samples: the "occupancy" grid, a "proposal" field, or by "auto" the grid for
-  // objects cut out by alpha, whose surroundings are empty, and a proposal for what has a
-  // background.
-  std::string sampler = "auto";
-  double near_distance = 0.05;       // first sample, in normalized scene units
-  double far_distance = 100.0;       // last sample, in normalized scene units
-  int steps_per_unit = 128;          // steps in a unit of contracted space
-  double stop_transmittance = 1e-4;  // a ray ends where less light than this gets through
+  SamplerKind sampler = SamplerKind::kAuto;
+  double near_distance = 0.05;
+  double far_distance = 100.0;
+  int steps_per_unit = 128;
+  double stop_transmittance = 1e-4;
   // What effects.unbounded says: whether there is anything outside the unit ball.
   bool unbounded = true;
 
+  // What single ranges cannot say. Throws InputError.
   void Check() const;
-  bool IsUnbounded() const { return unbounded; }
   float StepLength() const { return 1.0f / static_cast<float>(steps_per_unit); }
+
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("sampler", o.sampler,
+           "what places samples: the occupancy grid, a proposal network, or by alpha");
+    option("near_distance", o.near_distance, "scene units", Between(0, 1e8), "where rays begin");
+    option("far_distance", o.far_distance, "scene units", Between(0, 1e8), "and where they end");
+    option("steps_per_unit", o.steps_per_unit, "steps", Between(1, 4096),
+           "of the grid's march in a unit of contracted space");
+    option("stop_transmittance", o.stop_transmittance, "", StrictlyBetween(0, 1),
+           "a ray ends where less light than this gets through");
+  }
 };
 
 // The samples of one ray, or of several one after the other.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "nerf/base/options.h"
 #include "nerf/image/image.h"
 #include "nerf/image/mask.h"
 #include "nerf/scene/photograph.h"
@@ -17,12 +18,21 @@
 namespace nerf {
 
 struct DataOptions {
-  int downscale = 1;          // area-average photographs by this factor
-  int test_every = 8;         // hold out images 0, 8, 16, ... by name; 0 holds out none
-  int validation_images = 1;  // taken out of the training images to watch the progress; 0: none
-  int memory_mb = 1024;       // for pixels; where they do not fit, an even random share is held
+  int downscale = 1;
+  int test_every = 8;
+  int validation_images = 1;
+  int memory_mb = 1024;
 
-  void Check() const;
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("downscale", o.downscale, "", AtLeast(1), "photographs are area-averaged by this factor");
+    option("test_every", o.test_every, "", ZeroOr(AtLeast(2)),
+           "hold out images 0, 8, 16, ... by name; 0: none");
+    option("validation_images", o.validation_images, "", AtLeast(0),
+           "taken out of the training images to measure progress; 0: none");
+    option("memory_mb", o.memory_mb, "MB", AtLeast(1),
+           "for pixels; where they do not fit, an even random share is held");
+  }
 };
 
 // Marks each image as train, validation or test, in place. Splits that the source brings are kept

@@ -49,17 +49,16 @@ KnownField::KnownField(double density, const std::vector<double>& rgb, const Mar
   }
   OccupancyOptions occupancy;
   occupancy.resolution = 16;
-  EngineParts parts;
-  parts.field = field_;
-  parts.grid = std::make_shared<OccupancyGrid>(occupancy, march.StepLength());
+  parts_.field = field_;
+  parts_.grid = std::make_shared<OccupancyGrid>(occupancy, march.StepLength());
   if (with_proposal) {
-    parts.proposal_options.encoding = encoding;
-    parts.proposal_options.distortion = 0;  // the colours' loss alone reaches the field
-    parts.proposal = std::make_shared<ProposalField>(parts.proposal_options, 1);
+    parts_.config.proposal.encoding = encoding;
+    parts_.config.proposal.distortion = 0;  // the colours' loss alone reaches the field
+    parts_.proposal = std::make_shared<ProposalField>(parts_.config.proposal, 1);
   }
-  parts.march = march;
-  parts.gradient_scaling.full_distance = 0;
-  engines_ = {std::make_shared<LibTorchEngine>(parts), std::make_shared<FusedEngine>(parts)};
+  parts_.config.march = march;
+  parts_.config.gradient_scaling.full_distance = 0;
+  engines_ = {std::make_shared<LibTorchEngine>(parts_), std::make_shared<FusedEngine>(parts_)};
 }
 
 KnownField::~KnownField() = default;

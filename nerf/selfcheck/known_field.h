@@ -18,6 +18,8 @@ class KnownField {
   KnownField(double density, const std::vector<double>& rgb, const MarchOptions& march,
              bool with_proposal = false);
   ~KnownField();
+  KnownField(const KnownField&) = delete;  // the engines borrow the parts
+  KnownField& operator=(const KnownField&) = delete;
 
   // LibTorchEngine, then FusedEngine.
   const std::vector<std::shared_ptr<Engine>>& Engines() const { return engines_; }
@@ -29,6 +31,7 @@ class KnownField {
   static TargetBatch RaysFromTheOrigin(int count);
 
  private:
+  ModelParts parts_;
   std::shared_ptr<RadianceField> field_;
   std::vector<std::shared_ptr<Engine>> engines_;
 };

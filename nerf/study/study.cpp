@@ -1,23 +1,20 @@
 #include "nerf/study/study.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <fstream>
+#include <utility>
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/processor_name.h"
 #include "nerf/base/stopwatch.h"
-#include "nerf/config/config.h"
-#include "nerf/image/image_convert.h"
 #include "nerf/image/image_io.h"
-#include "nerf/image/image_metrics.h"
 #include "nerf/model/run_folder.h"
-#include "nerf/model/view_renderer.h"
-#include "nerf/render/image_renderer.h"
-#include "nerf/scene/camera.h"
-#include "nerf/scene/dataset.h"
-#include "nerf/scene/scene_normalization.h"
+#include "nerf/pipeline/effect_decisions.h"
+#include "nerf/pipeline/evaluation.h"
 #include "nerf/study/crop.h"
 #include "nerf/study/pareto.h"
 #include "nerf/train/trainer.h"
@@ -29,12 +26,15 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kDial[] = {1, 0.75, 0.5, 0.25, 0};
+constexpr double kQualities[] = {1, 0.75, 0.5, 0.25, 0};
 
-constexpr double kSlowestFrame = 5;  // seconds, of which all positions of the dial are measured
+constexpr double kSlowestFrame = 5;  // seconds, up to which all qualities are measured
 
-// What a setting takes beside its training, until the first has told.
+// What a setting takes beside its training, until the first has shown it.
 constexpr double kFirstOverhead = 4;  // seconds
+
+// Of the budget, after which effects are decided by as long a training as a middle setting has.
+constexpr double kMiddlePart = 0.07;
 
 fs::path JsonPath(const fs::path& folder) { return folder / "study.json"; }
 
@@ -58,27 +58,25 @@ json CostsOf(const fs::path& metrics) {
 
 }  // namespace
 
-Study::Study(PosedImages posed, const StudyOptions& options, fs::path folder)
-    : posed_(std::move(posed)),
+Study::Study(PreparedScene scene, const StudyOptions& options, fs::path folder,
+             PipelineListener listener)
+    : scene_(std::move(scene)),
       options_(options),
       folder_(std::move(folder)),
-      settings_(StudySettings(options.downscale)),
-      normalized_from_world_(NormalizeScene(posed_)) {
-  AssignSplits(posed_, LoadConfig("balanced", {}).data);
-  std::vector<const PosedImage*> all;
-  for (const auto& image : posed_.images) {
-    if (image.split == Split::kTest) all.push_back(&image);
-  }
+      listener_(std::move(listener)),
+      settings_(StudySettings(options.downscale)) {
+  const std::vector<const PosedImage*> all = ImagesOf(scene_.posed, Split::kTest);
+  const std::string source = scene_.posed.source.string();
   if (all.empty()) {
-    throw InputError("{}: a study is measured on held-out photographs; take 8 at least",
-                     posed_.source.string());
+    throw InputError("{}: a study is measured on held-out photographs; take 8 at least", source);
   }
   const auto count = std::min(all.size(), options_.held_out);
-  for (std::size_t i = 0; i < count; ++i) held_out_.push_back(all[i * all.size() / count]);
-
   json names = json::array();
-  for (const auto* image : held_out_) names.push_back(image->name);
-  results_ = {{"input", posed_.source.string()},
+  for (std::size_t i = 0; i < count; ++i) {
+    held_out_.push_back(all[i * all.size() / count]);
+    names.push_back(held_out_.back()->name);
+  }
+  results_ = {{"input", source},
               {"processor", ProcessorName()},
               {"threads", NumThreads()},
               {"downscale", options_.downscale},
@@ -86,7 +84,10 @@ Study::Study(PosedImages posed, const StudyOptions& options, fs::path folder)
               {"held_out", names},
               {"spent_seconds", 0.0},
               {"settings", json::array()}};
-  if (!fs::exists(JsonPath(folder_))) return;
+  if (fs::exists(JsonPath(folder_))) ReadEarlierResults();
+}
+
+void Study::ReadEarlierResults() {
   const json before =
       json::parse(ReadWholeFile(JsonPath(folder_)), nullptr, /*allow_exceptions=*/false);
   for (const char* key : {"input", "downscale", "budget_seconds", "held_out"}) {
@@ -96,36 +97,86 @@ Study::Study(PosedImages posed, const StudyOptions& options, fs::path folder)
     }
   }
   results_ = before;
+  decided_ = results_.value("effects", std::vector<std::string>());
 }
 
 // Each resolution is read once.
-const Study::Photographs& Study::Read(const Config& config) {
+Study::Photographs& Study::Read(const Config& config) {
   const auto [found, is_new] = photographs_.try_emplace(config.data.downscale);
-  if (is_new) {
-    const Stopwatch watch;
-    found->second.data =
-        LoadDataset(posed_, config.data, MeaningOf(config.effects.masks), normalized_from_world_);
-    found->second.seconds = watch.Seconds();
+  Photographs& photographs = found->second;
+  if (!is_new) return photographs;
+  const Stopwatch watch;
+  photographs.data = LoadDataset(scene_.posed, config.data, MeaningOf(config.effects.masks),
+                                 scene_.normalized_from_world);
+  AddSparseDepths(scene_.posed, scene_.normalized_from_world, photographs.data);
+  photographs.facts = FactsOf(photographs.data, scene_.normalized_from_world);
+  photographs.facts.exposure_stops = scene_.StopsOf(photographs.data.train);
+  photographs.seconds = watch.Seconds();
+  return photographs;
+}
+
+// As `nerf train` decides, once for all settings.
+void Study::DecideEffects() {
+  EffectDecisions decisions(scene_.inspection, {});
+  decided_ = decisions.Assignments();
+  const double seconds = kMiddlePart * options_.budget;
+  const StudySetting balanced = {"effects", "balanced", {}, 1};
+  Photographs& photographs = Read(ConfigOf(balanced, seconds));
+  if (photographs.facts.has_alpha) decisions.DisableBackgroundForAlpha(listener_);
+  decided_ = decisions.Assignments();
+  decisions.Try(ConfigOf(balanced, seconds), photographs.facts, seconds, photographs.data,
+                listener_);
+  decided_ = decisions.Assignments();
+  results_["effects"] = decided_;
+}
+
+Config Study::ConfigOf(const StudySetting& setting, double seconds) const {
+  std::vector<std::string> assignments = {fmt::format("data.downscale={}", options_.downscale),
+                                          fmt::format("train.time_budget={:.3f}", seconds)};
+  assignments.insert(assignments.end(), decided_.begin(), decided_.end());
+  assignments.insert(assignments.end(), setting.assignments.begin(), setting.assignments.end());
+  return LoadConfig(setting.preset, assignments);
+}
+
+// The key "qualities" of a setting: PSNR, SSIM and seconds a frame at each rendering quality. Writes
+// its crop.
+json Study::EvaluateQualities(const ModelSnapshot& model, const std::string& name) const {
+  json qualities = json::array();
+  for (const double quality : kQualities) {
+    // A field that is hardly trained can take minutes a frame: one quality shows that.
+    if (quality < 1 && qualities[0]["seconds_per_frame"] > kSlowestFrame) break;
+    const Evaluation evaluation = Evaluate(
+        model, scene_.posed, held_out_, {quality, false, options_.downscale},
+        [&](const EvaluatedView& view) {
+          if (quality != 1 || view.image != held_out_.front()) return;
+          const Patch patch = BusiestPatch(*view.truth);
+          MakeOutputFolder(folder_ / "crops");
+          WriteImage(folder_ / "crops" / (name + ".png"), Crop(*view.rendering, patch));
+          WriteImage(folder_ / "crops" / "truth.png", Crop(*view.truth, patch));
+        });
+    if (evaluation.scores.empty()) throw InputError("{}", evaluation.unreadable.front());
+    const ViewScore mean = evaluation.Mean();
+    qualities.push_back({{"quality", quality},
+                         {"psnr", mean.psnr},
+                         {"ssim", mean.ssim},
+                         {"seconds_per_frame", mean.seconds}});
   }
-  return found->second;
+  return qualities;
 }
 
 json Study::Measure(const StudySetting& setting, double seconds, const std::atomic<bool>& stop) {
-  std::vector<std::string> assignments = {fmt::format("data.downscale={}", options_.downscale),
-                                          fmt::format("train.time_budget={:.3f}", seconds)};
-  assignments.insert(assignments.end(), setting.assignments.begin(), setting.assignments.end());
-  const Config config = LoadConfig(setting.preset, assignments);
-
+  const Config config = ConfigOf(setting, seconds);
   const fs::path run = folder_ / "runs" / setting.name;
   RemoveAll(run);
   MakeOutputFolder(run);
   WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
-  sfm::WriteTransformsJson(posed_, PosesPath(run));
+  sfm::WriteTransformsJson(scene_.posed, PosesPath(run));
+  KeepSparsePoints(scene_.posed, config, run);
   const Photographs& photographs = Read(config);
-  const SceneFacts scene = FactsOf(photographs.data, normalized_from_world_);
   const Stopwatch watch;
-  Trainer trainer(config, scene, photographs.data, run);
-  const TrainSummary summary = trainer.Run(stop);
+  Trainer trainer(config, photographs.facts, photographs.data, run);
+  const TrainSummary summary =
+      trainer.Run(stop, [this](const TrainerEvent& event) { listener_(event); });
   if (!summary.finished) return {};
 
   json result = CostsOf(MetricsPath(run));
@@ -134,55 +185,28 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
   result["assignments"] = setting.assignments;
   result["seconds"] = photographs.seconds + watch.Seconds();
   result["steps"] = summary.step;
-  result["dial"] = json::array();
-  for (const double quality : kDial) {
-    // A field that is hardly trained can take minutes a frame: one position says so.
-    if (quality < 1 && result["dial"][0]["seconds_per_frame"] > kSlowestFrame) break;
-    const auto renderer = ViewRenderer(trainer.GetModel(), quality);
-    double psnr = 0, ssim = 0, frame = 0;
-    for (const PosedImage* image : held_out_) {
-      const Image truth = OnWhite(
-          LoadPhotograph(posed_, *image, {options_.downscale, MeaningOf(config.effects.masks)})
-              .pixels);
-      const Stopwatch of_frame;
-      const RenderedView view =
-          RenderView(*renderer, Downscaled(posed_.cameras[image->camera], options_.downscale),
-                     scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
-                     DisplayBackground(scene.has_alpha), scene.encoding);
-      const double part = 1.0 / static_cast<double>(held_out_.size());
-      frame += part * of_frame.Seconds();
-      psnr += part * Psnr(truth, view.rgb);
-      ssim += part * Ssim(truth, view.rgb);
-      if (quality == 1 && image == held_out_.front()) {
-        const Patch patch = BusiestPatch(truth);
-        MakeOutputFolder(folder_ / "crops");
-        WriteImage(folder_ / "crops" / (setting.name + ".png"), Crop(view.rgb, patch));
-        WriteImage(folder_ / "crops" / "truth.png", Crop(truth, patch));
-      }
-    }
-    result["dial"].push_back(
-        {{"quality", quality}, {"psnr", psnr}, {"ssim", ssim}, {"seconds_per_frame", frame}});
-  }
+  const auto model = ModelSnapshot::Copy(trainer.GetModel(), summary.step);
+  result["qualities"] = EvaluateQualities(*model, setting.name);
   return result;
 }
 
-// "on_training_front" of each setting, and "on_rendering_front" of each position of its dial.
+// "on_training_front" of each setting, and "on_rendering_front" of each of its rendering qualities.
 void Study::MarkFronts() {
-  std::vector<Offer> trainings, renderings;
-  std::vector<json*> positions;
+  std::vector<CostAndValue> trainings, renderings;
+  std::vector<json*> qualities;
   for (json& setting : results_["settings"]) {
-    trainings.push_back({setting["seconds"], setting["dial"][0]["psnr"]});
+    trainings.push_back({setting["seconds"], setting["qualities"][0]["psnr"]});
     setting["on_training_front"] = false;
-    for (json& position : setting["dial"]) {
-      renderings.push_back({position["seconds_per_frame"], position["psnr"]});
-      position["on_rendering_front"] = false;
-      positions.push_back(&position);
+    for (json& quality : setting["qualities"]) {
+      renderings.push_back({quality["seconds_per_frame"], quality["psnr"]});
+      quality["on_rendering_front"] = false;
+      qualities.push_back(&quality);
     }
   }
   for (const std::size_t i : ParetoFront(trainings)) {
     results_["settings"][i]["on_training_front"] = true;
   }
-  for (const std::size_t i : ParetoFront(renderings)) (*positions[i])["on_rendering_front"] = true;
+  for (const std::size_t i : ParetoFront(renderings)) (*qualities[i])["on_rendering_front"] = true;
 }
 
 void Study::Save() const {
@@ -195,6 +219,7 @@ bool Study::Run(const std::atomic<bool>& stop,
                 const std::function<void(std::size_t, const StudySetting&, double)>& begins) {
   const double spent_before = results_["spent_seconds"];
   const Stopwatch watch;
+  if (decided_.empty()) DecideEffects();
   double overhead = kFirstOverhead;
   for (std::size_t next = results_["settings"].size(); next < settings_.size(); ++next) {
     const double left = options_.budget - spent_before - watch.Seconds();

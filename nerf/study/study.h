@@ -6,11 +6,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "nerf/config/config.h"
+#include "nerf/pipeline/prepared_scene.h"
 #include "nerf/scene/dataset.h"
-#include "nerf/scene/posed_images.h"
-#include "nerf/scene/scene_normalization.h"
 #include "nerf/study/study_plan.h"
 
 namespace nerf {
@@ -21,15 +21,17 @@ struct StudyOptions {
   std::size_t held_out = 3;  // photographs that every setting is measured on, at most
 };
 
-// Trains every setting for its share of the budget and measures it on held-out photographs at
-// several positions of the dial. Writes study.json after each setting, and goes on where an earlier
-// call with the same options stopped.
+// Trains every setting for its share of the budget, with the effects that the capture calls for, as
+// `nerf train` does, and evaluates it on held-out photographs at several rendering qualities. Writes
+// study.json after each setting, and goes on where an earlier call with the same options stopped.
 class Study {
  public:
-  //   posed    with poses; splits are assigned here
-  //   folder   study.json, runs/SETTING and crops/SETTING.png go there
+  //   scene     prepared with the splits of the preset balanced, and inspected
+  //   folder    study.json, runs/SETTING and crops/SETTING.png go there
+  //   listener  of what training each setting reports
   // Throws InputError where the capture holds no photograph out, or the folder another study.
-  Study(PosedImages posed, const StudyOptions& options, std::filesystem::path folder);
+  Study(PreparedScene scene, const StudyOptions& options, std::filesystem::path folder,
+        PipelineListener listener);
 
   // Until the last setting is done or `stop` is set. Returns whether all are done.
   //   begins  called before each setting with its number, its name and its seconds of training
@@ -37,27 +39,33 @@ class Study {
            const std::function<void(std::size_t, const StudySetting&, double)>& begins);
 
   std::size_t Settings() const { return settings_.size(); }
-  // As in study.json; see JsonOf in study.cpp for its keys.
+  // As in study.json; see Measure in study.cpp for its keys.
   const nlohmann::json& Results() const { return results_; }
 
  private:
   struct Photographs {
     Dataset data;
+    SceneFacts facts;
     double seconds = 0;  // that reading took
   };
+  void ReadEarlierResults();
+  void DecideEffects();
+  Config ConfigOf(const StudySetting& setting, double seconds) const;
   nlohmann::json Measure(const StudySetting& setting, double seconds,
                          const std::atomic<bool>& stop);
-  const Photographs& Read(const Config& config);
+  nlohmann::json EvaluateQualities(const ModelSnapshot& model, const std::string& name) const;
+  Photographs& Read(const Config& config);
   void MarkFronts();
   void Save() const;
 
-  PosedImages posed_;
+  PreparedScene scene_;
   StudyOptions options_;
   std::filesystem::path folder_;
+  PipelineListener listener_;
   std::vector<StudySetting> settings_;
-  SceneNormalization normalized_from_world_;
-  std::vector<const PosedImage*> held_out_;
-  std::map<int, Photographs> photographs_;  // by downscale
+  std::vector<const PosedImage*> held_out_;  // of scene_
+  std::map<int, Photographs> photographs_;   // by downscale
+  std::vector<std::string> decided_;         // of effects, "effects.NAME=..."
   nlohmann::json results_;
 };
 

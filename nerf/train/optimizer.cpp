@@ -52,8 +52,11 @@ Adam::Adam(std::vector<std::pair<std::string, torch::Tensor>> parameters,
   }
 }
 
-void Adam::SetLearningRateFactor(double factor) {
-  for (auto& group : param_groups()) group.options().set_lr(options_.learning_rate * factor);
+void Adam::Step(double learning_rate_factor) {
+  for (auto& group : param_groups()) {
+    group.options().set_lr(options_.learning_rate * learning_rate_factor);
+  }
+  step();
 }
 
 bool Adam::StepDense(const Slot& slot, const torch::Tensor& gradient) {

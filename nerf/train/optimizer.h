@@ -24,13 +24,13 @@ class Adam : public torch::optim::Optimizer {
   Adam(std::vector<std::pair<std::string, torch::Tensor>> parameters,
        const OptimizerOptions& options);
 
-  // Multiplies the learning rate of the options from now on.
-  void SetLearningRateFactor(double factor);
+  // One step with the learning rate of the options times a factor, see step().
+  void Step(double learning_rate_factor);
 
   // One step along the gradients, which are 0 afterwards. A parameter without a gradient counts as
   // one whose gradient is 0.
   // Throws NonFiniteError naming the parameter whose gradient is not finite; parameters are then
-  // spoilt and must not be saved.
+  // invalid and must not be saved.
   torch::Tensor step(LossClosure closure = nullptr) override;
 
   // The state that a checkpoint keeps: "adam.m.NAME", "adam.v.NAME", "adam.n.NAME" (the steps of

@@ -1,12 +1,9 @@
 #include "nerf/train/trainer.h"
 
-#include <cmath>
-
 #include "nerf/base/stopwatch.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/train/metrics_file.h"
 #include "nerf/train/trainer_state.h"
-#include "nerf/train/training_display.h"
 #include "nerf/train/visible_cells.h"
 
 namespace nerf {
@@ -29,38 +26,43 @@ Trainer::~Trainer() = default;
 
 const Model& Trainer::GetModel() const { return state_->model; }
 
-double Trainer::ValidationPsnrAtOwnExposure() {
+SnapshotSlot& Trainer::Snapshots() { return state_->snapshots; }
+
+double Trainer::ValidationPsnrAtOwnExposure() const {
   return state_->validation.Psnr(state_->model, true);
 }
 
-double Trainer::TrySteps(int steps) {
-  State& s = *state_;
+double Trainer::TakeSteps(int steps) {
   const Stopwatch watch;
-  for (int i = 0; i < steps && !s.Over(); ++i) s.Step();
-  return watch.Seconds() / steps;
+  int taken = 0;
+  for (; taken < steps && !state_->Over(); ++taken) state_->Step();
+  return taken > 0 ? watch.Seconds() / taken : 0;
 }
 
-TrainSummary Trainer::Run(const std::atomic<bool>& stop) {
+TrainSummary Trainer::Run(const std::atomic<bool>& stop, const TrainerListener& listener) {
   State& s = *state_;
   const TrainOptions& options = s.Options();
+  const auto report = [&](const TrainerEvent& event) {
+    if (listener) listener(event);
+  };
   MetricsFile metrics(MetricsPath(s.run), s.step);
-  const bool timed = options.time_budget > 0;
-  const auto done = [&] { return timed ? std::llround(s.pace.Spent()) : s.step; };
-  TrainingDisplay display(timed ? std::llround(options.time_budget) : options.steps, done());
 
-  // Asked for once a step, for the clock goes on.
+  // Read once a step, for the clock goes on.
   bool over = s.Over();
   while (!over && !stop) {
     const double before = s.training_seconds;
     const auto rays = static_cast<double>(s.rays_per_batch);
     const StepResult result = s.Step();
     over = s.Over();
+    if (s.snapshots.IsWanted()) s.snapshots.Publish(ModelSnapshot::Copy(s.model, s.step));
 
     LapTimer timer;
     const bool validates = over || s.step % options.validate_every == 0;
     if (validates) {
-      if (!s.validation.Empty())
+      if (!s.validation.Empty()) {
         s.validation_psnr = s.validation.Psnr(s.model, s.model.exposure != nullptr);
+        report(Validated{s.step, s.training_seconds, s.validation_psnr});
+      }
       metrics.Append(s.Metrics());
       s.tally = {};
       over = over || s.ReachedTarget();
@@ -70,8 +72,10 @@ TrainSummary Trainer::Run(const std::atomic<bool>& stop) {
       double seconds = 0;
       timer.Lap(seconds);
       if (validates) s.pace.SetSecondsOfTheEnd(seconds);
+      report(CheckpointWritten{s.step});
     }
-    display.Update(done(), result.loss, rays / (s.training_seconds - before), metrics.Curve());
+    report(StepTaken{s.step, s.pace.Spent(), result.loss, rays / (s.training_seconds - before),
+                     &metrics.Curve()});
   }
   if (!over) s.Save();
   return {over, s.step, s.training_seconds, s.validation_psnr, s.ReachedTarget(), metrics.Curve()};

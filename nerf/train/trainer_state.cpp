@@ -21,15 +21,31 @@ namespace {
 // What checkpoints call the state of the error map.
 constexpr char kErrorsName[] = "sampler.errors";
 
+double PartOf(std::int64_t step, int steps) {
+  return steps > 0 ? std::clamp(static_cast<double>(step) / steps, 0.0, 1.0) : 1.0;
+}
+
+Annealing AnnealingAt(const Model& model, std::int64_t step) {
+  Annealing annealing;
+  if (model.proposal) {
+    annealing.proposal = PartOf(step, model.config.proposal.anneal_steps);
+  } else {
+    annealing.detail = PartOf(step, model.config.occupancy.coarse_to_fine_steps);
+  }
+  return annealing;
+}
+
 }  // namespace
 
 Trainer::State::State(Model model_in, const Dataset& data_in, std::filesystem::path run_in,
                       double spent)
     : model(std::move(model_in)),
+      engine(MakeEngine(model)),
       data(data_in),
       run(std::move(run_in)),
       sampler(data.train, Options().error_driven_share,
-              model.config.effects.depth ? model.config.effects.depth->share : 0.0),
+              model.config.effects.depth_supervision ? model.config.effects.depth_supervision->share
+                                                      : 0.0),
       optimizer(NamedParameters(model), model.config.optimizer),
       validation(data.validation, Options().seed),
       pace(Options(), spent),
@@ -37,7 +53,7 @@ Trainer::State::State(Model model_in, const Dataset& data_in, std::filesystem::p
                                               Options().max_rays_per_batch)) {
   TORCH_CHECK(Options().target_psnr == 0 || !validation.Empty(),
               "Trainer: a target PSNR needs validation photographs");
-  if (model.exposure || model.poses) CheckPhotographs();
+  if (model.exposure || model.pose_refinement) CheckPhotographs();
 }
 
 void Trainer::State::CheckPhotographs() const {
@@ -79,31 +95,32 @@ StepResult Trainer::State::Step() {
   return result;
 }
 
+StepContext Trainer::State::Context() const {
+  StepContext context;
+  context.step = step;
+  context.seed = Options().seed;
+  context.progress = pace.Progress(step);
+  context.learning_rate_factor =
+      LearningRateFactor(model.config.schedule, step, context.progress);
+  context.annealing = AnnealingAt(model, step);
+  return context;
+}
+
 StepResult Trainer::State::Learn(StepSeconds& seconds) {
-  const TrainOptions& options = Options();
-  if (model.proposal) {
-    const int anneal = model.config.proposal.anneal_steps;
-    model.proposal->SetTrust(anneal > 0 ? static_cast<double>(step) / anneal : 1.0);
-  } else if (const int fade = model.config.occupancy.coarse_to_fine_steps; fade > 0) {
-    model.field->SetDetail(static_cast<double>(step) / fade);
-  }
+  const StepContext context = Context();
+  model.annealing = context.annealing;
   try {
     LapTimer timer;
     double of_engine = 0;
-    if (step % model.config.occupancy.update_every == 0) {
-      model.engine->UpdateOccupancy(step, options.seed);
-    }
+    if (step % model.config.occupancy.update_every == 0) engine->UpdateOccupancy(context);
     timer.Lap(seconds.occupancy);
-    model.engine->SetProgress(pace.Progress(step));
-    const TargetBatch batch = sampler.Sample(rays_per_batch, options.seed, step);
+    const TargetBatch batch = sampler.Sample(rays_per_batch, context.seed, step);
     timer.Lap(seconds.pixels);
-    const StepResult result = model.engine->AccumulateGradients(batch);
+    const StepResult result = engine->AccumulateGradients(batch, context);
     timer.Lap(of_engine);
     if (ErrorMap* errors = sampler.Errors()) errors->Learn(batch.cell, result.ray_error);
     timer.Lap(seconds.pixels);
-    optimizer.SetLearningRateFactor(
-        LearningRateFactor(model.config.schedule, step, pace.Progress(step)));
-    optimizer.step();
+    optimizer.Step(context.learning_rate_factor);
     timer.Lap(seconds.optimizer);
     return result;
   } catch (const NonFiniteError& error) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "nerf/model/checkpoint.h"
@@ -29,6 +30,8 @@ struct Trainer::State {
   // A step with its book-keeping.
   StepResult Step();
   StepResult Learn(StepSeconds& seconds);
+  // Where the training stands now.
+  StepContext Context() const;
   // As the grid becomes tight a ray needs fewer samples, and a batch holds more rays.
   void AdaptBatch(std::int64_t shaded);
   bool ReachedTarget() const;
@@ -40,6 +43,8 @@ struct Trainer::State {
   void Load(const Checkpoint& checkpoint);
 
   Model model;
+  std::unique_ptr<Engine> engine;  // borrows the model
+  SnapshotSlot snapshots;
   const Dataset& data;
   std::filesystem::path run;
   PixelSampler sampler;

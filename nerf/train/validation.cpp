@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "nerf/effects/exposure_fit.h"
-#include "nerf/field/poses.h"
+#include "nerf/field/pose_refinement.h"
 #include "nerf/field/tensor_span.h"
 #include "nerf/model/model.h"
-#include "nerf/render/engine.h"
+#include "nerf/render/view_renderer.h"
 #include "nerf/train/tally.h"
 
 namespace nerf {
@@ -57,10 +57,10 @@ Validation::Validation(const std::vector<View>& views, std::uint64_t seed) {
 
 // As the model has refined lenses, and poses where it knows the photograph.
 RayBatch Validation::Rays(const Model& model) const {
-  if (!model.poses) return batch_.rays;
+  if (!model.pose_refinement) return batch_.rays;
   const torch::NoGradGuard no_grad;
   const std::int64_t count = batch_.rays.Size();
-  const torch::Tensor of_lens = model.poses->LogFocals();
+  const torch::Tensor of_lens = model.pose_refinement->LogFocals();
   const std::vector<std::string>& trained = model.scene.photographs;
   // Of each photograph, among those trained on; nullopt where it is none of them.
   std::vector<std::optional<std::int64_t>> place_of;
@@ -82,16 +82,16 @@ RayBatch Validation::Rays(const Model& model) const {
   };
   const torch::Tensor origin = rows(batch_.rays.origin, 3);
   const torch::Tensor direction = rows(batch_.rays.direction, 3);
-  const Poses::Moved refined =
-      model.poses->forward(origin, direction, TensorOf(place, {count}, torch::kLong));
-  const torch::Tensor zoomed = Poses::Zoomed(direction, rows(axis_, 3), rows(log_f, 1));
+  const RefinedRays refined =
+      model.pose_refinement->forward(origin, direction, TensorOf(place, {count}, torch::kLong));
+  const torch::Tensor zoomed = PoseRefinement::Zoomed(direction, rows(axis_, 3), rows(log_f, 1));
   const torch::Tensor is_known = rows(known, 1) > 0.5;
-  return Poses::WithMoved(batch_.rays, {torch::where(is_known, refined.origin, origin),
+  return WithRefinedRays(batch_.rays, {torch::where(is_known, refined.origin, origin),
                                         torch::where(is_known, refined.direction, zoomed)});
 }
 
 double Validation::Psnr(const Model& model, bool fit_exposure) const {
-  RenderOutput out = model.engine->Render(Rays(model));
+  RenderOutput out = MakeRenderer(model)->Render(Rays(model));
   if (fit_exposure) FitToPhotographs(out, batch_, model.scene.encoding);
   double sum = 0;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {

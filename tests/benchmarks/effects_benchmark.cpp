@@ -7,7 +7,7 @@
 #include "nerf/base/parallel.h"
 #include "nerf/config/config.h"
 #include "nerf/model/model.h"
-#include "nerf/pipeline/effect_trial.h"
+#include "nerf/model/parameters.h"
 #include "nerf/render/engine.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/dataset.h"
@@ -40,29 +40,34 @@ Dataset Photographs() {
 
 // Pixels are drawn, and gradients are taken. Items are rays; MB are the parameters with their
 // gradients and the optimiser's two moments.
-void Step(benchmark::State& state, const std::string& effect, const std::string& setting) {
+void Step(benchmark::State& state, const EffectDescriptor& effect, bool on) {
   at::set_num_threads(NumThreads());
   const Dataset data = Photographs();
-  const Model model = MakeModel(WithEffect(Config(), effect, setting), FactsOf(data, {}));
+  const Model model = MakeModel(WithEffect(Config(), effect, on), FactsOf(data, {}));
+  const std::unique_ptr<Engine> engine = MakeEngine(model);
   const PixelSampler sampler(data.train);
   std::uint64_t step = 0;
   for (auto _ : state) {
     const TargetBatch batch = sampler.Sample(kRays, 1, step++);
-    benchmark::DoNotOptimize(model.engine->AccumulateGradients(batch).loss);
+    benchmark::DoNotOptimize(engine->AccumulateGradients(batch).loss);
   }
   state.SetItemsProcessed(state.iterations() * kRays);
-  state.counters["MB"] = MegabytesOf(model);
+  double bytes = 0;
+  for (const auto& [name, parameter] : NamedParameters(model)) {
+    bytes += 4.0 * static_cast<double>(parameter.nbytes());
+  }
+  state.counters["MB"] = bytes * 0x1p-20;
 }
 #define NERF_STEP(name, ...) \
   BENCHMARK_CAPTURE(Step, name, __VA_ARGS__)->UseRealTime()->Unit(benchmark::kMillisecond)
-NERF_STEP(as_by_default, "view", "{}");
-NERF_STEP(without_view, "view", "null");
-NERF_STEP(with_background, "background", "{}");
-NERF_STEP(with_exposure, "exposure", "{}");
-NERF_STEP(with_robust, "robust", "{}");
-NERF_STEP(with_poses, "poses", "{}");
-NERF_STEP(with_footprint, "footprint", "{}");
-NERF_STEP(without_unbounded, "unbounded", "null");
+NERF_STEP(as_by_default, kViewDependence, true);
+NERF_STEP(without_view_dependence, kViewDependence, false);
+NERF_STEP(with_background, kBackground, true);
+NERF_STEP(with_exposure, kExposure, true);
+NERF_STEP(with_robust, kRobust, true);
+NERF_STEP(with_pose_refinement, kPoseRefinement, true);
+NERF_STEP(with_anti_aliasing, kAntiAliasing, true);
+NERF_STEP(without_unbounded, kUnbounded, false);
 
 }  // namespace
 }  // namespace nerf

@@ -51,18 +51,15 @@ struct Scene {
   }
   template <class E>
   std::unique_ptr<Engine> Make(kernels::Precision precision) {
-    EngineParts parts;
+    parts.config = config;
+    parts.config.train.precision = precision;
     parts.field = field;
     parts.grid = grid;
     parts.proposal = proposal;
-    parts.march = config.march;
-    parts.proposal_options = config.proposal;
-    parts.loss = config.loss;
-    parts.gradient_scaling = config.gradient_scaling;
-    parts.precision = precision;
     return std::make_unique<E>(parts);
   }
   Config config;
+  ModelParts parts;  // that the engine borrows
   std::shared_ptr<RadianceField> field;
   std::shared_ptr<OccupancyGrid> grid;
   std::shared_ptr<ProposalField> proposal;

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "nerf/render/view_renderer.h"
 #include "nerf/render/engine.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/pixel_sampler.h"
@@ -58,7 +59,7 @@ double PsnrOver(const Model& model, const std::vector<View>& views) {
     std::iota(pixels.begin(), pixels.end(), 0);
     const ViewRays rays =
         RaysOfPixels(view.camera, view.normalized_from_camera, pixels, Eigen::Vector3f::Zero());
-    const RenderOutput out = model.engine->Render(rays.rays);
+    const RenderOutput out = MakeRenderer(model)->Render(rays.rays);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const float alpha = static_cast<float>(view.rgba[4 * i + 3]);
       for (int c = 0; c < 3; ++c) {

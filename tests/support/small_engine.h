@@ -20,18 +20,22 @@ namespace nerf::test {
 // A field of few parameters and the engine that defines what it means, with six rays: small enough
 // for central differences.
 struct SmallEngine {
-  std::shared_ptr<RadianceField> field;
-  std::shared_ptr<OccupancyGrid> grid;
-  std::shared_ptr<ProposalField> proposal;
+  ModelParts parts;
+  std::shared_ptr<RadianceField> field;     // of parts
+  std::shared_ptr<OccupancyGrid> grid;      // of parts
+  std::shared_ptr<ProposalField> proposal;  // of parts
   ProposalOptions proposal_options;
   MarchOptions march;
   std::shared_ptr<LibTorchEngine> engine;
   TargetBatch batch;
 
+  SmallEngine(const SmallEngine&) = delete;  // the engine borrows the parts
+  SmallEngine& operator=(const SmallEngine&) = delete;
+
   //   change  of the parts, before the engine is made of them
   explicit SmallEngine(torch::Dtype dtype, double stop_transmittance = 1e-9,
                        bool with_proposal = false,
-                       const std::function<void(EngineParts&)>& change = {}) {
+                       const std::function<void(ModelParts&)>& change = {}) {
     kernels::HashGridOptions encoding;
     encoding.levels = 3;
     encoding.log2_table_size = 9;
@@ -55,13 +59,12 @@ struct SmallEngine {
       proposal = std::make_shared<ProposalField>(proposal_options, 6);
       proposal->to(dtype);
     }
-    EngineParts parts;
     parts.field = field;
     parts.grid = grid;
     parts.proposal = proposal;
-    parts.march = march;
-    parts.proposal_options = proposal_options;
-    parts.gradient_scaling.full_distance = 0;
+    parts.config.march = march;
+    parts.config.proposal = proposal_options;
+    parts.config.gradient_scaling.full_distance = 0;
     if (change) change(parts);
     field = parts.field;
     {

@@ -11,7 +11,7 @@
 #include "nerf/field/background.h"
 #include "nerf/field/exposure.h"
 #include "nerf/field/libtorch.h"
-#include "nerf/field/poses.h"
+#include "nerf/field/pose_refinement.h"
 #include "nerf/field/proposal_field.h"
 #include "nerf/field/radiance_field.h"
 #include "nerf/render/fused_engine.h"
@@ -30,19 +30,23 @@ struct TwoEngines {
   MarchOptions march;
   LossOptions loss;
   GradientScalingOptions gradient_scaling;
-  ColorModel color_model = ColorModel::kByDirection;
+  ColorModel color_model = ColorModel::kViewDependent;
   std::optional<RobustOptions> robust;
-  std::optional<DepthOptions> depth;
-  std::optional<FootprintOptions> footprint;
+  std::optional<DepthSupervisionOptions> depth;
+  std::optional<AntiAliasingOptions> anti_aliasing;
   std::shared_ptr<Background> background;
   std::shared_ptr<Exposure> exposure;
-  std::shared_ptr<Poses> poses;
+  std::shared_ptr<PoseRefinement> pose_refinement;
 
   std::shared_ptr<RadianceField> field;
   std::shared_ptr<OccupancyGrid> grid;
+  ModelParts parts;
   std::unique_ptr<Engine> libtorch, fused;
   TargetBatch batch;
+  StepContext context;  // of ExpectTheSame
 
+  TwoEngines(const TwoEngines&) = delete;  // the engines borrow the parts
+  TwoEngines& operator=(const TwoEngines&) = delete;
   TwoEngines() {
     encoding.levels = 5;
     encoding.log2_table_size = 10;
@@ -78,20 +82,19 @@ struct TwoEngines {
     OccupancyOptions occupancy;
     occupancy.resolution = 16;
     grid = std::make_shared<OccupancyGrid>(occupancy, march.StepLength());
-    EngineParts parts;
     parts.field = field;
     parts.grid = grid;
     parts.proposal = proposal;
-    parts.march = march;
-    parts.proposal_options = proposal_options;
-    parts.loss = loss;
-    parts.gradient_scaling = gradient_scaling;
-    parts.robust = robust;
-    parts.depth = depth;
-    parts.footprint = footprint;
+    parts.config.march = march;
+    parts.config.proposal = proposal_options;
+    parts.config.loss = loss;
+    parts.config.gradient_scaling = gradient_scaling;
+    parts.config.effects.robust = robust;
+    parts.config.effects.depth_supervision = depth;
+    parts.config.effects.anti_aliasing = anti_aliasing;
     parts.background = background;
     parts.exposure = exposure;
-    parts.poses = poses;
+    parts.pose_refinement = pose_refinement;
     libtorch = std::make_unique<LibTorchEngine>(parts);
     fused = std::make_unique<FusedEngine>(parts);
     batch.rays.Resize(rays);
@@ -123,13 +126,14 @@ struct TwoEngines {
     if (proposal) take(*proposal, "proposal.");
     if (background) take(*background, "background.");
     if (exposure) take(*exposure, "exposure.");
-    if (poses) take(*poses, "poses.");
+    if (pose_refinement) take(*pose_refinement, "poses.");
     return gradients;
   }
 
   // tolerance: of the gradients, as a part of their largest value. Rounding alone asks for 1e-4;
   // where samples stand a rounding apart, a neuron's sign may differ for one of them.
   void ExpectTheSame(double tolerance = 1e-4) {
+    parts.annealing = context.annealing;
     const RenderOutput a = libtorch->Render(batch.rays), b = fused->Render(batch.rays);
     ASSERT_EQ(a.rgb.size(), b.rgb.size());
     for (std::size_t i = 0; i < a.rgb.size(); ++i) {
@@ -139,9 +143,9 @@ struct TwoEngines {
       EXPECT_NEAR(a.opacity[r], b.opacity[r], 1e-5);
       EXPECT_NEAR(a.depth[r], b.depth[r], 1e-4 * (1 + a.depth[r]));
     }
-    const StepResult step_a = libtorch->AccumulateGradients(batch);
+    const StepResult step_a = libtorch->AccumulateGradients(batch, context);
     const auto gradients_a = Gradients();
-    const StepResult step_b = fused->AccumulateGradients(batch);
+    const StepResult step_b = fused->AccumulateGradients(batch, context);
     const auto gradients_b = Gradients();
     EXPECT_NEAR(step_a.loss, step_b.loss, 1e-5 * step_a.loss);
     EXPECT_NEAR(step_a.squared_error, step_b.squared_error, 1e-5 * step_a.squared_error);

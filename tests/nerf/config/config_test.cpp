@@ -36,7 +36,7 @@ TEST(Config, AssignmentsChangeSingleKeys) {
   const Config config =
       LoadConfig("base", {"train.steps=77", "loss.kind=mse", "march.far_distance=50"});
   EXPECT_EQ(config.train.steps, 77);
-  EXPECT_EQ(config.loss.kind, "mse");
+  EXPECT_EQ(config.loss.kind, LossKind::kMse);
   EXPECT_EQ(config.march.far_distance, 50.0);
 }
 
@@ -58,7 +58,7 @@ TEST(Config, AWrongTypeIsNamed) {
 TEST(Config, AValueOutOfRangeIsNamed) {
   EXPECT_THAT(ErrorOf("base", {"train.steps=0"}), HasSubstr("train.steps"));
   EXPECT_THAT(ErrorOf("base", {"encoding.features=3"}), HasSubstr("encoding.features"));
-  EXPECT_THAT(ErrorOf("base", {"encoding.levels=4294967297"}), HasSubstr("encoding/levels"));
+  EXPECT_THAT(ErrorOf("base", {"encoding.levels=4294967297"}), HasSubstr("encoding.levels"));
   EXPECT_THAT(ErrorOf("base", {"train.seed=-1"}),
               HasSubstr("train.seed must be a whole number, 0 or more"));
   EXPECT_THAT(ErrorOf("base", {"loss.kind=l7"}), HasSubstr("l7"));

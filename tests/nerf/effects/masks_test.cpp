@@ -19,8 +19,8 @@ TEST(MasksEffect, MeansNothingToPhotographsWhereItIsOff) {
 }
 
 TEST(MasksEffect, MeansWhatItIsCalled) {
-  EXPECT_EQ(MeaningOf(MaskOptions{"ignore"}), MaskMeaning::kIgnore);
-  EXPECT_EQ(MeaningOf(MaskOptions{"empty"}), MaskMeaning::kEmpty);
+  EXPECT_EQ(MeaningOf(MaskOptions{MaskMeaning::kIgnore}), MaskMeaning::kIgnore);
+  EXPECT_EQ(MeaningOf(MaskOptions{MaskMeaning::kEmpty}), MaskMeaning::kEmpty);
   EXPECT_EQ(MeaningOf(MaskOptions()), MaskMeaning::kIgnore);  // as COLMAP's masks
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "nerf/field/tensor_span.h"
-#include "nerf/model/view_renderer.h"
+#include "nerf/render/view_renderer.h"
 #include "tests/support/analytic_capture.h"
 #include "tests/support/central_differences.h"
 #include "tests/support/input_error_of.h"
@@ -140,8 +140,8 @@ TEST(Background, IsWorthADecibelAndMoreUnderASky) {
   up.origin = {0, 0, 1};
   up.direction = {0, 0, 1};
   up.jitter = {0.5f};
-  const auto exact = with_sky.engine->Render(up).rgb;
-  const auto quick = ViewRenderer(with_sky, 0.9)->Render(up).rgb;
+  const auto exact = MakeRenderer(with_sky)->Render(up).rgb;
+  const auto quick = MakeRenderer(with_sky, 0.9)->Render(up).rgb;
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(quick[c], exact[c], 0.1);
 }
 

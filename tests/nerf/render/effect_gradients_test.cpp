@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "nerf/effects/footprint.h"
+#include "nerf/effects/anti_aliasing.h"
 #include "nerf/field/background.h"
 #include "nerf/field/exposure.h"
-#include "nerf/field/poses.h"
+#include "nerf/field/pose_refinement.h"
 #include "tests/support/small_engine.h"
 
 namespace nerf {
@@ -18,18 +18,18 @@ namespace {
 
 struct Effect {
   std::string name;
-  std::function<void(EngineParts&)> add;
+  std::function<void(ModelParts&)> add;
 };
 
 class EffectOnTheWholePath : public testing::TestWithParam<Effect> {};
 
 TEST_P(EffectOnTheWholePath, HasGradientsThatAreCentralDifferences) {
   std::vector<torch::Tensor> others;
-  test::SmallEngine e(torch::kDouble, 1e-9, false, [&](EngineParts& parts) {
+  test::SmallEngine e(torch::kDouble, 1e-9, false, [&](ModelParts& parts) {
     GetParam().add(parts);
     torch::manual_seed(3);
     const torch::NoGradGuard no_grad;
-    if (parts.poses) parts.poses->to(torch::kDouble);
+    if (parts.pose_refinement) parts.pose_refinement->to(torch::kDouble);
     for (torch::nn::Module* module :
          std::initializer_list<torch::nn::Module*>{parts.background.get(), parts.exposure.get()}) {
       if (!module) continue;
@@ -41,16 +41,15 @@ TEST_P(EffectOnTheWholePath, HasGradientsThatAreCentralDifferences) {
     }
   });
   e.batch.rays.spread.assign(e.batch.rays.Size(), 0.02f);
-  e.engine->SetProgress(1);
   test::ExpectGradientsOfTheWholePath(e, others);
 }
 
 // Of poses the field's gradients; their own, for which distances along the ray are constants, have
 // a test beside them (Poses.GradientsMatchCentralDifferences).
-std::shared_ptr<Poses> ThreePoses() {
+std::shared_ptr<PoseRefinement> ThreePoses() {
   const std::vector<CameraPlace> places = {
       {{2, 0, 0}, {-1, 0, 0}, 0}, {{0, 2, 0}, {0, -1, 0}, 0}, {{0, 0, 2}, {0, 0, -1}, 0}};
-  auto poses = std::make_shared<Poses>(places, PosesOptions());
+  auto poses = std::make_shared<PoseRefinement>(places, PoseRefinementOptions());
   const torch::NoGradGuard no_grad;
   torch::manual_seed(4);
   for (torch::Tensor& parameter : poses->parameters()) parameter.normal_(0, 0.5);
@@ -59,12 +58,12 @@ std::shared_ptr<Poses> ThreePoses() {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, EffectOnTheWholePath,
-    testing::Values(Effect{"Poses", [](EngineParts& parts) { parts.poses = ThreePoses(); }},
-                    Effect{"Bounded", [](EngineParts& parts) { parts.march.unbounded = false; }},
+    testing::Values(Effect{"Poses", [](ModelParts& parts) { parts.pose_refinement = ThreePoses(); }},
+                    Effect{"Bounded", [](ModelParts& parts) { parts.config.march.unbounded = false; }},
                     Effect{"Footprint",
-                           [](EngineParts& parts) { parts.footprint = FootprintOptions(); }},
+                           [](ModelParts& parts) { parts.config.effects.anti_aliasing = AntiAliasingOptions(); }},
                     Effect{"Diffuse",
-                           [](EngineParts& parts) {
+                           [](ModelParts& parts) {
                              kernels::HashGridOptions encoding;
                              encoding.levels = 3;
                              encoding.log2_table_size = 9;
@@ -78,15 +77,15 @@ INSTANTIATE_TEST_SUITE_P(
                              parts.field->to(torch::kDouble);
                            }},
                     Effect{"Background",
-                           [](EngineParts& parts) {
+                           [](ModelParts& parts) {
                              parts.background = std::make_shared<Background>(BackgroundOptions{4},
                                                                              ColorEncoding::kSrgb);
                            }},
                     Effect{"Exposure",
-                           [](EngineParts& parts) {
+                           [](ModelParts& parts) {
                              parts.exposure = std::make_shared<Exposure>(3, ColorEncoding::kSrgb);
                            }},
-                    Effect{"Robust", [](EngineParts& parts) { parts.robust = RobustOptions(); }}),
+                    Effect{"Robust", [](ModelParts& parts) { parts.config.effects.robust = RobustOptions(); }}),
     [](const auto& of) { return of.param.name; });
 
 }  // namespace

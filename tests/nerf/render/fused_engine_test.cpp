@@ -22,13 +22,13 @@ TEST_P(FusedEngineAtEveryLevel, MeansWhatLibTorchEngineMeans) {
 }
 
 TEST_P(FusedEngineAtEveryLevel, MeansWhatLibTorchEngineMeansWithAProposal) {
-  for (const double trust : {0.0, 0.3, 1.0}) {
+  for (const double exponent : {0.0, 0.3, 1.0}) {
     TwoEngines e;
     e.Make(50, /*with_proposal=*/true);
-    SCOPED_TRACE(trust);
-    e.proposal->SetTrust(trust);
-    // Without trust the places of samples depend on no density, and are the same.
-    e.ExpectTheSame(trust == 0 ? 1e-4 : 0.1);
+    SCOPED_TRACE(exponent);
+    e.context.annealing.proposal = exponent;
+    // With 0 the places of samples depend on no density, and are the same.
+    e.ExpectTheSame(exponent == 0 ? 1e-4 : 0.1);
   }
 }
 
@@ -37,7 +37,7 @@ NERF_FOR_EVERY_SIMD_LEVEL(FusedEngineAtEveryLevel);
 TEST(FusedEngine, MeansTheSameForLinearRadianceSquaredErrorsAndOtherNetworks) {
   TwoEngines e;
   e.color = ColorEncoding::kLinear;
-  e.loss.kind = "mse";
+  e.loss.kind = LossKind::kMse;
   e.gradient_scaling.full_distance = 0;
   e.encoding.features = 2;
   e.field_options.hidden_width = 40;
@@ -49,7 +49,7 @@ TEST(FusedEngine, MeansTheSameForLinearRadianceSquaredErrorsAndOtherNetworks) {
 TEST(FusedEngine, MeansTheSameWhileDetailIsFadedIn) {
   TwoEngines e;
   e.Make(20);
-  e.field->SetDetail(0.45);
+  e.context.annealing.detail = 0.45;
   e.ExpectTheSame();
 }
 
@@ -69,11 +69,14 @@ TEST(FusedEngine, MeansTheSameWithManySamplesARayAndOnOneThread) {
 TEST(FusedEngine, UpdatesOccupancyAsLibTorchEngineDoes) {
   TwoEngines e;
   e.Make(1);
-  e.libtorch->UpdateOccupancy(16, 3);
+  StepContext context;
+  context.step = 16;
+  context.seed = 3;
+  e.libtorch->UpdateOccupancy(context);
   const std::vector<float> expected = e.grid->Density();
   std::fill(e.grid->Density().begin(), e.grid->Density().end(), 0.0f);
   e.grid->Refresh();
-  e.fused->UpdateOccupancy(16, 3);
+  e.fused->UpdateOccupancy(context);
   ASSERT_EQ(e.grid->Density().size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_NEAR(e.grid->Density()[i], expected[i], 1e-4 * (1 + expected[i]));

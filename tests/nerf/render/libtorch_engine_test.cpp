@@ -24,8 +24,8 @@ TEST(LibTorchEngine, GradientsOfTheWholePathMatchCentralDifferences) {
 }
 
 TEST(LibTorchEngine, GradientsOfKnownDistancesMatchCentralDifferences) {
-  Fixture f(torch::kDouble, 1e-4, false, [](EngineParts& parts) {
-    parts.depth = DepthOptions{0.1, 1.0, 0.05};
+  Fixture f(torch::kDouble, 1e-4, false, [](ModelParts& parts) {
+    parts.config.effects.depth_supervision = DepthSupervisionOptions{0.1, 1.0, 0.05};
   });
   f.batch.distance = {2.0f, 0.0f, 1.5f, 2.5f, 2.0f, 3.0f};
   ExpectGradientsOfTheWholePath(f);

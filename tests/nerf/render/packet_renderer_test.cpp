@@ -13,8 +13,7 @@ namespace {
 using test::TwoEngines;
 
 RenderOutput RenderWith(const TwoEngines& e, const RenderQuality& quality) {
-  return PacketRenderer(e.field, e.grid, e.proposal, e.march, e.proposal_options, quality)
-      .Render(e.batch.rays);
+  return PacketRenderer(e.parts, quality).Render(e.batch.rays);
 }
 
 RenderQuality Exact(const TwoEngines& e) {

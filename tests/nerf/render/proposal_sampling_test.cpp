@@ -116,9 +116,8 @@ TEST(ProposeSamples, SamplesStandWhereTheWeightsAre) {
   const RayBatch rays = SomeRays(8);
   ProposalField proposal(options, 1);
   FillTable(proposal, 20.0);
-  const auto share_in_heaviest = [&](double trust) {
-    proposal.SetTrust(trust);
-    const ProposedSamples out = ProposeSamples(rays, proposal, options, march);
+  const auto share_in_heaviest = [&](double exponent) {
+    const ProposedSamples out = ProposeSamples(rays, proposal, options, march, exponent);
     const torch::Tensor weights = out.coarse_weights.detach();
     int inside = 0;
     for (std::int64_t r = 0; r < 8; ++r) {

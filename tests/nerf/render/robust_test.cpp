@@ -39,7 +39,7 @@ TEST(RobustLoss, GradientsMatchCentralDifferences) {
   const torch::Tensor target = torch::rand({6, 3}, torch::kDouble);
   const torch::Tensor predicted =
       torch::rand({6, 3}, torch::dtype(torch::kDouble)).requires_grad_(true);
-  for (const char* kind : {"huber", "mse"}) {
+  for (const LossKind kind : {LossKind::kHuber, LossKind::kMse}) {
     LossOptions loss;
     loss.kind = kind;
     test::ExpectGradientMatchesCentralDifferences(
@@ -61,14 +61,13 @@ TEST(RobustLoss, OfAnEndlessScaleChangesNoBit) {
 }
 
 TEST(RobustLoss, MeansTheSameInBothEngines) {
-  for (const char* kind : {"huber", "mse"}) {
+  for (const LossKind kind : {LossKind::kHuber, LossKind::kMse}) {
     test::TwoEngines e;
     e.loss.kind = kind;
     e.robust = RobustOptions();
     e.Make(50);
     for (const double progress : {0.0, 0.3, 1.0}) {
-      e.libtorch->SetProgress(progress);
-      e.fused->SetProgress(progress);
+      e.context.progress = progress;
       e.ExpectTheSame();
     }
   }

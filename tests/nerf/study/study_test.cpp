@@ -18,27 +18,31 @@ using testing::HasSubstr;
 
 using test::never_stop;
 
-PosedImages SmallSample(const test::ScratchFolder& folder, int views) {
+PreparedScene SmallSample(const test::ScratchFolder& folder, int views) {
   sample::SampleOptions options;
   options.views = views;
   options.width = 32;
   options.height = 24;
   options.samples_per_pixel = 1;
   sample::WriteSample(folder.path() / "sample", options);
-  return sfm::ReadTransformsJson(folder.path() / "sample/truth/transforms.json");
+  const Config config = LoadConfig("balanced", {});
+  PreparedScene scene = PrepareScene(folder.path() / "sample/truth/transforms.json", folder.path(),
+                                     config.data, 0, IgnoreEvents);
+  InspectScene(config, {}, scene, IgnoreEvents);
+  return scene;
 }
 
 // With nothing left of the budget every setting still gets its second.
 TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   const test::ScratchFolder folder;
-  const PosedImages posed = SmallSample(folder, 10);
+  const PreparedScene scene = SmallSample(folder, 10);
   StudyOptions options;
   options.budget = 1;
   const auto out = folder.path() / "study";
   MakeOutputFolder(out);
 
   std::atomic<bool> stop = false;
-  Study first(posed, options, out);
+  Study first(scene, options, out, IgnoreEvents);
   std::vector<std::size_t> begun;
   const auto note = [&](std::size_t number, const StudySetting&, double seconds) {
     begun.push_back(number);
@@ -48,7 +52,7 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   EXPECT_FALSE(first.Run(stop, note));
   EXPECT_EQ(begun, (std::vector<std::size_t>{0, 1, 2}));
 
-  Study again(posed, options, out);
+  Study again(scene, options, out, IgnoreEvents);
   EXPECT_EQ(again.Results()["settings"].size(), 2u);
   EXPECT_TRUE(again.Run(never_stop, note));
   EXPECT_EQ(begun[3], 2u);
@@ -59,8 +63,8 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   double before = 0;
   for (const auto& setting : json["settings"]) {
     EXPECT_GT(setting["steps"], 0);
-    EXPECT_EQ(setting["dial"].size(), 5u);
-    for (const auto& position : setting["dial"]) {
+    EXPECT_EQ(setting["qualities"].size(), 5u);
+    for (const auto& position : setting["qualities"]) {
       EXPECT_GT(position["psnr"], 3) << setting["name"];
       EXPECT_GT(position["seconds_per_frame"], 0);
     }
@@ -71,16 +75,16 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   EXPECT_GT(before, 0);
   EXPECT_GE(on_front, 1);
   // Every setting can be looked at as any run.
-  EXPECT_EQ(OpenRun(out / "runs" / "narrow").model.config.field.hidden_width, 32);
+  EXPECT_EQ(OpenRun(out / "runs" / "narrow").model->GetModel().config.field.hidden_width, 32);
 
   options.budget = 2;
-  EXPECT_THAT(test::InputErrorOf([&] { Study(posed, options, out); }), HasSubstr("budget_seconds"));
+  EXPECT_THAT(test::InputErrorOf([&] { Study(scene, options, out, IgnoreEvents); }), HasSubstr("budget_seconds"));
 }
 
 TEST(Study, NeedsPhotographsToMeasureOn) {
   const test::ScratchFolder folder;
   EXPECT_THAT(
-      test::InputErrorOf([&] { Study(SmallSample(folder, 5), StudyOptions{}, folder.path()); }),
+      test::InputErrorOf([&] { Study(SmallSample(folder, 5), StudyOptions{}, folder.path(), IgnoreEvents); }),
       HasSubstr("held-out"));
 }
 

@@ -16,6 +16,7 @@
 #include "nerf/render/non_finite_error.h"
 #include "nerf/scene/scene_normalization.h"
 #include "nerf/train/trainer.h"
+#include "nerf/render/view_renderer.h"
 #include "tests/support/analytic_capture.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/small_capture.h"
@@ -71,7 +72,7 @@ TEST(HardScene, ThinFogKeepsItsOpacity) {
   through_the_middle.origin = {0, -1.5f, 0};
   through_the_middle.direction = {0, 1, 0};
   through_the_middle.jitter = {0.5f};
-  const double opacity = model.engine->Render(through_the_middle).opacity[0];
+  const double opacity = MakeRenderer(model)->Render(through_the_middle).opacity[0];
   EXPECT_NEAR(opacity, -std::expm1(-0.05), 0.25 * 0.05);
 }
 

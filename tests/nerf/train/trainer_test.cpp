@@ -11,6 +11,7 @@
 #include "nerf/model/run_folder.h"
 #include "nerf/render/engine.h"
 #include "nerf/render/image_renderer.h"
+#include "nerf/render/view_renderer.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/small_capture.h"
 #include "tests/support/tiny_training.h"
@@ -121,7 +122,7 @@ TEST(Trainer, StagesOfAStepSumToItsTime) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
   test::ScratchFolder run;
   Config config = FewSteps(20);
-  config.march.sampler = "proposal";
+  config.march.sampler = SamplerKind::kProposal;
   Trainer(config, small.scene, small.data, run.path()).Run(never_stop);
   std::ifstream metrics(MetricsPath(run.path()));
   std::string line;
@@ -154,7 +155,7 @@ TEST(Trainer, LearnsAViewThatItNeverSaw) {
   for (std::size_t i = 0; i < posed.images.size(); ++i) {
     if (posed.images[i].split != Split::kTest) continue;
     const RenderedView view = RenderView(
-        *trainer.GetModel().engine, posed.cameras[posed.images[i].camera],
+        *MakeRenderer(trainer.GetModel()), posed.cameras[posed.images[i].camera],
         small.scene.normalized_from_world.NormalizedFromCamera(posed.images[i].world_from_camera),
         Eigen::Vector3f::Zero(), ColorEncoding::kSrgb);
     psnr += Psnr(small.capture.views[i].photo, view.rgb);

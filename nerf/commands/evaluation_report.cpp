@@ -1,0 +1,98 @@
+#include "nerf/commands/evaluation_report.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "nerf/base/peak_memory.h"
+
+namespace nerf {
+namespace {
+
+// JSON has no infinity.
+nlohmann::json JsonNumber(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json("inf");
+}
+
+}  // namespace
+
+nlohmann::json JsonFromEvaluation(const Evaluation& evaluation) {
+  const ViewScore mean = evaluation.Mean();
+  const RenderCost& cost = evaluation.cost;
+  nlohmann::json images = nlohmann::json::array();
+  for (const ViewScore& s : evaluation.scores) {
+    images.push_back(
+        {{"name", s.name}, {"psnr", JsonNumber(s.psnr)}, {"ssim", s.ssim}, {"seconds", s.seconds}});
+  }
+  return {{"psnr", JsonNumber(mean.psnr)},
+          {"ssim", mean.ssim},
+          {"seconds_per_frame", mean.seconds},
+          {"stage_seconds_per_frame",
+           {{"sampling", cost.PerView(cost.seconds.sampling)},
+            {"encoding", cost.PerView(cost.seconds.encoding)},
+            {"networks", cost.PerView(cost.seconds.networks)},
+            {"compositing", cost.PerView(cost.seconds.compositing)},
+            {"reading_photographs", cost.PerView(cost.reading)}}},
+          {"samples_per_ray", cost.SamplesPerRay()},
+          {"peak_megabytes", PeakMegabytes()},
+          {"images", images}};
+}
+
+void PrintEvaluation(const Evaluation& evaluation) {
+  const RenderCost& cost = evaluation.cost;
+  std::size_t width = 5;
+  for (const ViewScore& s : evaluation.scores) width = std::max(width, s.name.size());
+  fmt::print("{:<{}}  {:>8}  {:>7}  {:>9}\n", "image", width, "PSNR dB", "SSIM", "seconds");
+  const auto row = [width](const ViewScore& s) {
+    fmt::print("{:<{}}  {:>8.2f}  {:>7.4f}  {:>9.2f}\n", s.name, width, s.psnr, s.ssim, s.seconds);
+  };
+  for (const ViewScore& s : evaluation.scores) row(s);
+  row(evaluation.Mean());
+  fmt::print("{:.1f} samples a ray, {:.0f} MB at most\n", cost.SamplesPerRay(), PeakMegabytes());
+  if (cost.seconds.Sum() == 0) return;  // of a renderer that does not measure
+  fmt::print("of a frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, rest {:.2f} s\n",
+             cost.PerView(cost.seconds.sampling), cost.PerView(cost.seconds.encoding),
+             cost.PerView(cost.seconds.networks), cost.PerView(cost.seconds.compositing));
+}
+
+nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& all, int steps) {
+  nlohmann::json effects = nlohmann::json::array();
+  for (const EffectMeasurement& m : all) {
+    effects.push_back({{"effect", m.effect->name},
+                       {"psnr_with", m.with.psnr},
+                       {"psnr_without", m.without.psnr},
+                       {"on_halves", m.on_halves},
+                       {"seconds_a_step_with", m.with.seconds_a_step},
+                       {"seconds_a_step_without", m.without.seconds_a_step},
+                       {"megabytes", m.with.megabytes - m.without.megabytes}});
+  }
+  return {{"steps", steps}, {"effects", effects}};
+}
+
+void PrintMeasurements(const std::vector<EffectMeasurement>& all, int steps) {
+  if (all.empty()) {
+    fmt::print("the run simulates no effect that could be disabled\n");
+    return;
+  }
+  fmt::print("{:<17} {:>8} {:>9} {:>8} {:>16} {:>9}\n", "effect", "with dB", "without", "gain dB",
+             "time of a step", "memory MB");
+  for (const EffectMeasurement& m : all) {
+    fmt::print("{:<17} {:>8.2f} {:>9.2f} {:>+8.2f} {:>+14.1f} % {:>+9.2f}\n", m.effect->name,
+               m.with.psnr, m.without.psnr, m.with.psnr - m.without.psnr,
+               100 * (m.with.seconds_a_step / m.without.seconds_a_step - 1),
+               m.with.megabytes - m.without.megabytes);
+  }
+  fmt::print(
+      "after {} steps, on the held-out photographs, each at its own exposure; more training may "
+      "change it\n",
+      steps);
+  for (const EffectMeasurement& m : all) {
+    if (!m.on_halves) continue;
+    fmt::print("{}: on the right halves of photographs whose left halves are trained on\n",
+               m.effect->name);
+  }
+}
+
+}  // namespace nerf

@@ -1,0 +1,167 @@
+#include "nerf/commands/training_display.h"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace nerf {
+namespace {
+
+constexpr double kGain = 0.5;  // dB, whose price is shown
+
+// What quality cost, and what more of it will:
+// "27.30 dB, last +0.5 dB cost 40 s, next about 90 s".
+std::string PriceOfQuality(const QualityCurve& curve) {
+  std::string text;
+  if (const auto psnr = curve.Last()) text += fmt::format("{:.2f} dB", *psnr);
+  if (const auto last = curve.SecondsOfLast(kGain)) {
+    text += fmt::format(", last +{} dB cost {}", kGain, FormatSeconds(*last));
+  }
+  if (const auto next = curve.SecondsForNext(kGain)) {
+    text += fmt::format(", next about {}", FormatSeconds(*next));
+  }
+  return text;
+}
+
+template <class... Args>
+void Print(fmt::format_string<Args...> format, Args&&... args) {
+  fmt::print(format, std::forward<Args>(args)...);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void TrainingDisplay::operator()(const PipelineEvent& event) {
+  std::visit([this](const auto& e) { Show(e); }, event);
+}
+
+void TrainingDisplay::Show(const Warning& event) { spdlog::warn("{}", event.text); }
+
+void TrainingDisplay::Show(const PosesFound& event) {
+  const sfm::ColmapReport& report = event.report;
+  double seconds = 0;
+  for (const auto& [step, step_seconds] : report.seconds) seconds += step_seconds;
+  Print("poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
+        report.registered, report.photos, report.points, report.mean_reprojection_error,
+        FormatDuration(seconds));
+}
+
+void TrainingDisplay::Show(const InspectionProgress& event) {
+  if (!progress_) progress_.emplace("inspecting", event.photographs);
+  if (event.done < event.photographs) {
+    progress_->Update(event.done);
+  } else {
+    progress_.reset();
+  }
+}
+
+void TrainingDisplay::Show(const CaptureInspected& event) {
+  const std::vector<Verdict>& verdicts = event.inspection->verdicts;
+  if (event.inspection->stops.empty()) {
+    // Most is undecided, and the table would be long for what it shows.
+    std::vector<std::string> facts;
+    for (const Verdict& v : verdicts) {
+      const bool is_unbounded = v.effect == kUnbounded.name;
+      if (v.on && !is_unbounded) facts.push_back(v.effect);
+      if (v.decided && !v.on && is_unbounded) facts.push_back("not " + v.effect);
+    }
+    fmt::print("effects: no sparse points to tell from, so as configured{}{}\n",
+               facts.empty() ? "" : "; and ", fmt::join(facts, ", "));
+  } else {
+    fmt::print("effects that the capture calls for ({:.1f} s):\n{}", event.seconds,
+               TableOf(verdicts));
+  }
+  if (!event.requested.empty()) {
+    fmt::print("as requested, whatever the capture calls for: {}\n",
+               fmt::join(event.requested, ", "));
+  }
+  std::fflush(stdout);
+}
+
+void TrainingDisplay::Show(const DataPlanned& event) {
+  const DataPlan& plan = event.plan;
+  const std::string share =
+      plan.held == plan.pixels
+          ? ""
+          : fmt::format(", of every {:.3g} pixels one at random (data.memory_mb allows no more)",
+                        static_cast<double>(plan.pixels) / static_cast<double>(plan.held));
+  Print(
+      "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels; {} MB of "
+      "pixels held{}\n",
+      event.threads, plan.train, plan.validation, plan.held_out, event.width, event.height,
+      plan.Bytes() >> 20, share);
+}
+
+void TrainingDisplay::Show(const VerdictReached& event) { Print("{}", RowOf(event.verdict)); }
+
+void TrainingDisplay::Show(const EffectsTried& event) {
+  Print("trials took {:.1f} s\n", event.seconds);
+}
+
+void TrainingDisplay::Show(const EffectsUndecided& event) {
+  Print("not conclusive, and so as configured: {}\n", fmt::join(event.effects, ", "));
+}
+
+void TrainingDisplay::Show(const BudgetPlanned& event) {
+  Print("time budget {}: preset {}, about {:.0f} steps\n", FormatDuration(event.seconds),
+        event.preset, event.steps);
+}
+
+void TrainingDisplay::Show(const PosesRefined& event) {
+  const PoseRefinementSummary& s = event.summary;
+  Print(
+      "poses: cameras turned by {:.3f} degrees in the median ({:.3f} at most) and shifted by "
+      "{:.3g} units ({:.3g}); focal lengths changed by {:.2f} % at most\n",
+      s.median_degrees, s.most_degrees, s.median_shift, s.most_shift, 100 * s.most_focal);
+}
+
+void TrainingDisplay::Show(const TrainerEvent& event) {
+  if (const auto* step = std::get_if<StepTaken>(&event)) Show(*step);
+}
+
+void TrainingDisplay::Show(const StepTaken& event) {
+  constexpr double kSmoothing = 0.95;
+  const bool timed = train_.time_budget > 0;
+  const std::int64_t done = timed ? std::llround(event.spent_seconds) : event.step;
+  if (!progress_) {
+    progress_.emplace("training", timed ? std::llround(train_.time_budget) : train_.steps, done);
+  }
+  const double keep = rays_per_second_ == 0 ? 0.0 : kSmoothing;
+  loss_ = keep * loss_ + (1 - keep) * event.loss;
+  rays_per_second_ = keep * rays_per_second_ + (1 - keep) * event.rays_per_second;
+  if (!ProgressLine::IsTerminal()) return;
+  progress_->Update(done, fmt::format("loss {:.5f}  {:.1f}k rays/s  {}", loss_,
+                                      rays_per_second_ / 1e3, PriceOfQuality(*event.curve)));
+}
+
+void TrainingDisplay::Show(const TrainingEnded& event) {
+  progress_.reset();
+  const TrainSummary& summary = event.summary;
+  const std::string psnr = summary.validation_psnr > 0
+                               ? fmt::format(", validation {:.2f} dB", summary.validation_psnr)
+                               : "";
+  const std::string run = event.run.string();
+  if (!summary.finished) {
+    Print("stopped at step {}, saved{}\ngo on with: nerf train --resume -o {}\n", summary.step,
+          psnr, run);
+    return;
+  }
+  fmt::print("trained {} steps in {:.1f} s{}\n", summary.step, summary.training_seconds, psnr);
+  if (event.options.target_psnr > 0) {
+    fmt::print("target of {} dB {}\n", event.options.target_psnr,
+               summary.reached_target ? "reached" : "not reached");
+  }
+  const auto last = summary.curve.SecondsOfLast(kGain), next = summary.curve.SecondsForNext(kGain);
+  if (last && next) {
+    fmt::print("the last {} dB cost {}; {} dB more would take about {} more\n", kGain,
+               FormatSeconds(*last), kGain, FormatSeconds(*next));
+  }
+  Print("{}\nnext: nerf eval {}\n", run, run);
+}
+
+}  // namespace nerf

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+
+#include "nerf/base/progress.h"
+#include "nerf/pipeline/events.h"
+
+namespace nerf {
+
+// What a person sees of a pipeline on the terminal: results on standard output, warnings and
+// progress on standard error. A listener like any other.
+class TrainingDisplay {
+ public:
+  //   train  what the progress line counts up to; its steps, or its seconds where a budget decides
+  void operator()(const PipelineEvent& event);
+
+  // Before the training begins.
+  void SetGoal(const TrainOptions& train) { train_ = train; }
+
+ private:
+  void Show(const Warning& event);
+  void Show(const PosesFound& event);
+  void Show(const InspectionProgress& event);
+  void Show(const CaptureInspected& event);
+  void Show(const DataPlanned& event);
+  void Show(const VerdictReached& event);
+  void Show(const EffectsTried& event);
+  void Show(const EffectsUndecided& event);
+  void Show(const BudgetPlanned& event);
+  void Show(const PosesRefined& event);
+  void Show(const TrainingEnded& event);
+  void Show(const TrainerEvent& event);
+  void Show(const StepTaken& event);
+
+  TrainOptions train_;
+  std::optional<ProgressLine> progress_;
+  double loss_ = 0, rays_per_second_ = 0;  // running means
+};
+
+}  // namespace nerf

@@ -1,0 +1,91 @@
+#include "nerf/effects/anti_aliasing.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "nerf/scene/camera.h"
+
+namespace nerf {
+namespace {
+
+// Of a uniform distribution over a unit.
+constexpr float kDeviation = 0.28867513f;
+// Half a unit of the cube is two of contracted space.
+constexpr float kCubeFromContracted = 0.25f;
+// From here on erf is 1 in float.
+constexpr float kSharp = 4;
+
+constexpr double kScales = 2.2;  // largest over smallest of a point, median over sightings
+constexpr double kSmallest = 0.1, kLargest = 0.9;  // quantiles of a point's scales
+
+}  // namespace
+
+std::vector<float> Footprints(const RayBatch& rays, std::span<const std::int64_t> ray,
+                              std::span<const float> t, const AntiAliasingOptions& options) {
+  std::vector<float> footprint(t.size(), 0.0f);
+  if (rays.spread.empty()) return footprint;
+  const float unit = static_cast<float>(options.pixels) * kDeviation * kCubeFromContracted;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const std::int64_t r = ray[i];
+    const Eigen::Vector3f x =
+        Eigen::Vector3f(&rays.origin[3 * r]) + t[i] * Eigen::Vector3f(&rays.direction[3 * r]);
+    const float inverse = 1 / std::max(1.0f, x.stableNorm());
+    footprint[i] = unit * rays.spread[r] * t[i] * (2 - inverse) * inverse;
+  }
+  return footprint;
+}
+
+std::vector<float> AntiAliasingWeights(const kernels::HashGridLayout& layout,
+                               std::span<const float> footprint) {
+  const std::size_t levels = layout.levels.size();
+  std::vector<float> weights(levels * footprint.size());
+  for (std::size_t i = 0; i < footprint.size(); ++i) {
+    // Of a point infinite, whose error function is 1.
+    const float reach = 1 / (std::sqrt(8.0f) * footprint[i]);
+    for (std::size_t l = 0; l < levels; ++l) {
+      const float x = reach / static_cast<float>(layout.levels[l].resolution);
+      weights[i * levels + l] = x > kSharp ? 1.0f : std::erf(x);
+    }
+  }
+  return weights;
+}
+
+Verdict JudgeAntiAliasing(const PosedImages& posed) {
+  std::vector<double> ratios;  // of each sighting: what many photographs see counts more
+  for (const SparsePoint& point : posed.points) {
+    std::vector<double> footprints;  // of a pixel at the point, world units
+    for (const TrackElement& seen : point.track) {
+      const PosedImage& image = posed.images[seen.image];
+      const double distance = (point.x_in_world - image.world_from_camera.translation()).norm();
+      footprints.push_back(distance / FocalLength(posed.cameras[image.camera]));
+    }
+    const double smallest = Quantile(footprints, kSmallest);
+    if (smallest > 0) {
+      const double ratio = Quantile(footprints, kLargest) / smallest;
+      ratios.insert(ratios.end(), point.track.size(), ratio);
+    }
+  }
+  if (ratios.empty()) return Undecided(kAntiAliasing.name, "no sightings of points to tell from");
+  const double median = Quantile(ratios, 0.5);
+  return Measured(kAntiAliasing.name, median, kScales,
+                  fmt::format("photographs show a point at scales {:.1f} to 1 apart (threshold {:.1f} "
+                              "to 1)",
+                              median, kScales));
+}
+
+const EffectDescriptor kAntiAliasing = {
+    .name = "anti_aliasing",
+    .old_name = "footprint",
+    .help = "a pixel averages a patch that grows with the distance: finer levels get less weight",
+    .hook = "encode",
+    .judge =
+        [](const CaptureEvidence& e) {
+          return e.HasTracks() ? JudgeAntiAliasing(*e.posed)
+                               : Undecided(kAntiAliasing.name, e.unknown_because);
+        },
+};
+
+}  // namespace nerf

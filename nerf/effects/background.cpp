@@ -1,0 +1,36 @@
+#include "nerf/effects/background.h"
+
+#include <spdlog/fmt/fmt.h>
+
+namespace nerf {
+
+Verdict JudgeBackground(const PointShares& shares) {
+  const Verdict verdict = Measured(
+      kBackground.name, shares.far, kFarAway,
+      fmt::format("{:.1f} % of the points are more than {:.0f} radii away (threshold {:.1f} %){}",
+                  100 * shares.far, kFarRadius, 100 * kFarAway,
+                  shares.far >= kFarAway && !IsBeforeBackground(shares)
+                      ? ", but contracted space holds them with those before them"
+                      : ""));
+  // It is decided together with `unbounded`, so one is as conclusive as the other.
+  if (!verdict.on) return verdict;
+  return Fact(kBackground.name, IsBeforeBackground(shares), shares.far, verdict.evidence);
+}
+
+const EffectDescriptor kBackground = {
+    .name = "background",
+    .old_name = nullptr,
+    .help = "a learned colour for each direction behind everything, such as a sky",
+    .hook = "background",
+    .parameters = "background.",
+    .judge =
+        [](const CaptureEvidence& e) {
+          if (e.HasAlpha()) {
+            return Fact(kBackground.name, false, 0, "photographs with alpha show none");
+          }
+          return e.HasTracks() ? JudgeBackground(e.shares)
+                               : Undecided(kBackground.name, e.unknown_because);
+        },
+};
+
+}  // namespace nerf

@@ -1,0 +1,43 @@
+#include "nerf/effects/exposure.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nerf {
+namespace {
+
+constexpr double kStops = 0.1;  // standard deviation over the photographs that calls for the effect
+
+}  // namespace
+
+Verdict JudgeExposure(const std::vector<double>& stops, const std::string& source) {
+  double squares = 0, largest = 0;
+  for (const double s : stops) {
+    squares += s * s;
+    largest = std::max(largest, std::fabs(s));
+  }
+  const double spread = std::sqrt(squares / static_cast<double>(stops.size()));
+  return Measured(kExposure.name, spread, kStops,
+                  fmt::format("photographs differ by {:.2f} stops ({:.2f} at most) {} (threshold "
+                              "{:.2f})",
+                              spread, largest, source, kStops));
+}
+
+const EffectDescriptor kExposure = {
+    .name = "exposure",
+    .old_name = nullptr,
+    .help = "a gain for each photograph and channel: exposure and white balance that differ",
+    .hook = "exposure",
+    .parameters = "exposure.",
+    .judge =
+        [](const CaptureEvidence& e) {
+          return e.stops.empty() ? Undecided(kExposure.name, e.unknown_because)
+                                 : JudgeExposure(e.stops, e.stops_source);
+        },
+    // Photographs often differ in it, and it may gain ten decibels.
+    .tried_without_evidence = true,
+};
+
+}  // namespace nerf

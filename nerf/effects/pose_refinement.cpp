@@ -1,0 +1,49 @@
+#include "nerf/effects/pose_refinement.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <vector>
+
+#include "nerf/scene/camera.h"
+
+namespace nerf {
+namespace {
+
+constexpr double kWrongPixels = 1.25;  // median over sightings, pixels of the photographs
+
+}  // namespace
+
+Verdict JudgePoseRefinement(const PosedImages& posed) {
+  std::vector<double> pixels;
+  for (const SparsePoint& point : posed.points) {
+    for (const TrackElement& seen : point.track) {
+      const PosedImage& image = posed.images[seen.image];
+      const auto pixel = PixelFromPoint(posed.cameras[image.camera],
+                                        image.world_from_camera.inverse() * point.x_in_world);
+      if (pixel) pixels.push_back((*pixel - seen.pixel).norm());
+    }
+  }
+  if (pixels.empty()) return Undecided(kPoseRefinement.name, "no sightings of points to tell from");
+  const double median = Quantile(pixels, 0.5);
+  return Measured(kPoseRefinement.name, median, kWrongPixels,
+                  fmt::format("points are seen {:.2f} pixels from where the poses put them "
+                              "(threshold {:.2f})",
+                              median, kWrongPixels));
+}
+
+const EffectDescriptor kPoseRefinement = {
+    .name = "pose_refinement",
+    .old_name = "poses",
+    .help = "poses and focal lengths that are a little wrong, refined with the field",
+    .hook = "warp",
+    .parameters = "poses.",
+    .judge =
+        [](const CaptureEvidence& e) {
+          return e.HasTracks() ? JudgePoseRefinement(*e.posed)
+                               : Undecided(kPoseRefinement.name, e.unknown_because);
+        },
+    .trial_steps = 400,  // poses must converge before they gain anything
+    .measured_on_halves = true,
+};
+
+}  // namespace nerf

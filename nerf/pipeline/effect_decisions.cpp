@@ -1,0 +1,84 @@
+#include "nerf/pipeline/effect_decisions.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "nerf/pipeline/effect_trials.h"
+
+namespace nerf {
+namespace {
+
+// Properties of the photographs are not chosen.
+bool IsChosen(const Verdict& verdict) {
+  return verdict.effect != kAlpha && verdict.effect != kHdr;
+}
+
+}  // namespace
+
+EffectDecisions::EffectDecisions(const Inspection& inspection, std::set<std::string> requested)
+    : verdicts_(inspection.verdicts), requested_(std::move(requested)) {
+  for (const Verdict& verdict : verdicts_) {
+    if (!IsChosen(verdict) || requested_.contains(verdict.effect) || !verdict.IsSure()) continue;
+    assignments_.push_back(verdict.assignment);
+  }
+}
+
+bool EffectDecisions::IsOpen(const EffectDescriptor& effect) const {
+  return std::ranges::any_of(verdicts_, [&](const Verdict& verdict) {
+    return verdict.effect == effect.name && nerf::IsOpen(verdict, requested_);
+  });
+}
+
+void EffectDecisions::DisableBackgroundForAlpha(const PipelineListener& listener) {
+  const auto find = [&](const EffectDescriptor& effect) {
+    return std::ranges::find(verdicts_, effect.name, &Verdict::effect);
+  };
+  const auto replace = [&](Verdict& verdict, bool on, const char* why) {
+    if (requested_.contains(verdict.effect)) return;
+    verdict = Fact(verdict.effect, on, 0, why);
+    assignments_.push_back(verdict.assignment);
+    listener(VerdictReached{verdict});
+  };
+  const auto background = find(kBackground), unbounded = find(kUnbounded);
+  const auto end = verdicts_.end();
+  if (background == end || !background->decided || (!background->on && background->IsSure())) {
+    return;
+  }
+  if (background->on && unbounded != end && !unbounded->on) {
+    replace(*unbounded, true, "no background is learned that would hold what is far");
+  }
+  replace(*background, false, "some photograph has alpha, and shows none");
+}
+
+void EffectDecisions::Try(const Config& config, const SceneFacts& scene, double seconds_left,
+                          Dataset& data, const PipelineListener& listener) {
+  const EffectTrials trials =
+      RunEffectTrials(config, scene, requested_, seconds_left, data, verdicts_, listener);
+  assignments_.insert(assignments_.end(), trials.assignments.begin(), trials.assignments.end());
+  trial_seconds_ = trials.seconds;
+  EffectsUndecided undecided;
+  for (const Verdict& v : verdicts_) {
+    if (IsChosen(v) && nerf::IsOpen(v, requested_)) undecided.effects.push_back(v.effect);
+  }
+  if (!undecided.effects.empty()) listener(undecided);
+}
+
+nlohmann::json EffectDecisions::Report(const Config& config, double inspection_seconds) const {
+  nlohmann::json verdicts = nlohmann::json::array(), simulated = nlohmann::json::array();
+  for (const EffectDescriptor* effect : AllEffects()) {
+    if (Simulates(config.effects, *effect)) simulated.push_back(effect->name);
+  }
+  for (const Verdict& v : verdicts_) {
+    verdicts.push_back({{"effect", v.effect},
+                        {"evidence", v.evidence},
+                        {"decided", v.decided},
+                        {"on", v.on},
+                        {"sure", v.Sure()},
+                        {"asked_for", requested_.contains(v.effect)}});
+  }
+  return {{"verdicts", verdicts},           {"simulated", simulated},
+          {"asked_for", requested_},        {"assignments", assignments_},
+          {"seconds", inspection_seconds}, {"trial_seconds", trial_seconds_}};
+}
+
+}  // namespace nerf

@@ -1,0 +1,168 @@
+#include "nerf/pipeline/prepared_scene.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/stopwatch.h"
+#include "nerf/effects/depth_supervision.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/scene/camera.h"
+#include "sfm/colmap_model.h"
+#include "sfm/colmap_text_writer.h"
+#include "sfm/masks.h"
+#include "sfm/pose_input.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "a, b, c and 14 more"
+std::string SomeOf(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
+  return text;
+}
+
+// The folder in which an image's name is its path.
+fs::path ImageFolder(const PosedImage& image) {
+  fs::path folder = image.path;
+  for ([[maybe_unused]] const fs::path& part : fs::path(image.name)) folder = folder.parent_path();
+  return folder;
+}
+
+PosedImages FindPoses(const fs::path& input, const fs::path& folder, int threads,
+                      const PipelineListener& listener) {
+  const sfm::InputLocation location = sfm::FindInput(input);
+  PosedImages posed;
+  if (location.kind == sfm::InputKind::kPhotos) {
+    sfm::ColmapOptions colmap;
+    colmap.threads = threads;
+    PosesFound found;
+    posed = sfm::PosesFromPhotos(location.images, ColmapPath(folder), colmap, &found.report);
+    if (!found.report.skipped.empty()) {
+      listener(Warning{fmt::format("{} of {} photographs cannot be read and are left out",
+                                   found.report.skipped.size(),
+                                   found.report.skipped.size() + found.report.photos)});
+    }
+    listener(found);
+  } else {
+    posed = sfm::ReadPosedInput(location);
+  }
+  sfm::FindMasks(posed);
+  return posed;
+}
+
+}  // namespace
+
+std::vector<double> PreparedScene::StopsOf(const std::vector<View>& train) const {
+  std::map<std::string, double> stops_of;
+  for (std::size_t i = 0; i < inspection.stops.size(); ++i) {
+    stops_of[posed.images[i].name] = inspection.stops[i];
+  }
+  std::vector<double> stops;
+  for (const View& view : train) {
+    if (const auto found = stops_of.find(view.name); found != stops_of.end()) {
+      stops.push_back(found->second);
+    }
+  }
+  return stops.size() == train.size() ? stops : std::vector<double>();
+}
+
+PreparedScene PrepareScene(const fs::path& input, const fs::path& folder,
+                           const DataOptions& options, int threads,
+                           const PipelineListener& listener) {
+  PreparedScene scene;
+  scene.posed = FindPoses(input, folder, threads, listener);
+  ReportMissing(scene.posed, listener);
+  AssignSplits(scene.posed, options);
+  scene.normalized_from_world = NormalizeScene(scene.posed);
+  return scene;
+}
+
+void InspectScene(const Config& config, const std::set<std::string>& requested,
+                  PreparedScene& scene, const PipelineListener& listener) {
+  const Stopwatch watch;
+  const auto photographs = static_cast<std::int64_t>(scene.posed.images.size());
+  const bool may_learn = !requested.contains(kBackground.name) || config.effects.background;
+  scene.inspection = Inspect(
+      scene.posed, [&](int read) { listener(InspectionProgress{read, photographs}); }, may_learn);
+  scene.normalized_from_world = scene.inspection.normalized_from_world;
+  scene.inspection_seconds = watch.Seconds();
+  listener(InspectionProgress{photographs, photographs});
+  if (!scene.inspection.warning.empty()) listener(Warning{scene.inspection.warning});
+}
+
+void ReportDataPlan(const PosedImages& posed, const DataOptions& options, int threads,
+                    const PipelineListener& listener) {
+  DataPlanned planned{PlanData(posed, options), 0, 0, threads};
+  for (const auto& image : posed.images) {
+    const Camera camera = Downscaled(posed.cameras[image.camera], options.downscale);
+    planned.width = std::max(planned.width, camera.width);
+    planned.height = std::max(planned.height, camera.height);
+  }
+  listener(planned);
+}
+
+void ReportMissing(const PosedImages& posed, const PipelineListener& listener) {
+  if (posed.missing.empty()) return;
+  listener(Warning{fmt::format("{}: {} of {} images are missing and left out: {}",
+                               posed.source.string(), posed.missing.size(),
+                               posed.missing.size() + posed.images.size(), SomeOf(posed.missing))});
+}
+
+void KeepSparsePoints(const PosedImages& posed, const Config& config, const fs::path& run) {
+  if (!config.effects.depth_supervision) return;
+  if (posed.points.empty()) {
+    throw InputError(
+        "{}: effects.depth_supervision needs sparse points, and there are none; give a COLMAP "
+        "project or photographs, or turn the effect off",
+        posed.source.string());
+  }
+  MakeOutputFolder(SparsePath(run));
+  sfm::WriteColmapText(posed, SparsePath(run));
+}
+
+void AddKeptPoints(const PosedImages& posed, const SceneNormalization& normalized_from_world,
+                   const fs::path& run, Dataset& data) {
+  const PosedImages sparse =
+      sfm::ReadColmapModel(SparsePath(run), ImageFolder(posed.images.front()));
+  AddSparseDepths(sparse, normalized_from_world, data);
+}
+
+Dataset LoadPhotographs(const PosedImages& posed, const Config& config,
+                        const SceneNormalization& normalized_from_world, const fs::path& run,
+                        const PipelineListener& listener) {
+  if (config.effects.masks &&
+      std::ranges::all_of(posed.images, [](const auto& image) { return image.mask.empty(); })) {
+    throw InputError(
+        "effects.masks: no photograph has a mask; put them into a folder masks beside the "
+        "photographs, IMAGE.png each, or turn the effect off");
+  }
+  Dataset data =
+      LoadDataset(posed, config.data, MeaningOf(config.effects.masks), normalized_from_world);
+  if (!data.skipped.empty()) {
+    for (const std::string& reason : data.skipped) listener(Warning{reason});
+    listener(
+        Warning{fmt::format("{} images could not be read and are left out", data.skipped.size())});
+  }
+  if (data.made_linear > 0) {
+    listener(Warning{fmt::format(
+        "{} of the photographs are display-referred (JPEG, PNG) among linear ones (EXR, HDR); they "
+        "are converted to linear radiance, and their clipped pixels are ignored",
+        data.made_linear)});
+  }
+  if (config.effects.depth_supervision) AddKeptPoints(posed, normalized_from_world, run, data);
+  return data;
+}
+
+}  // namespace nerf

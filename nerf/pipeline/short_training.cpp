@@ -1,0 +1,63 @@
+#include "nerf/pipeline/short_training.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "nerf/base/stopwatch.h"
+#include "nerf/model/parameters.h"
+#include "nerf/train/trainer.h"
+
+namespace nerf {
+namespace {
+
+constexpr int kTimed = 10;  // steps at a time
+
+// What a model's training holds: parameters, their gradients, and Adam's two moments.
+double MegabytesOf(const Model& model) {
+  double bytes = 0;
+  for (const auto& [name, parameter] : NamedParameters(model)) {
+    bytes += 4.0 * static_cast<double>(parameter.nbytes());
+  }
+  return bytes * 0x1p-20;
+}
+
+// The same configuration for so many steps and no other end.
+Config ForSteps(Config config, int steps) {
+  config.train.steps = steps;
+  config.train.time_budget = 0;
+  config.train.target_psnr = 0;
+  return config;
+}
+
+}  // namespace
+
+ShortTraining TrainShortly(const Config& config, const SceneFacts& scene, const Dataset& data,
+                           int steps) {
+  TORCH_CHECK(!data.validation.empty(), "TrainShortly: no validation photographs");
+  const Stopwatch watch;
+  Trainer trainer(ForSteps(config, steps), scene, data, {});
+  std::vector<double> seconds;
+  for (int done = 0; done < steps; done += kTimed) {
+    seconds.push_back(trainer.TakeSteps(std::min(kTimed, steps - done)));
+  }
+  std::ranges::nth_element(seconds,
+                           seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2));
+  ShortTraining result;
+  result.seconds_a_step = seconds[seconds.size() / 2];
+  result.psnr = trainer.ValidationPsnrAtOwnExposure();
+  result.megabytes = MegabytesOf(trainer.GetModel());
+  result.seconds = watch.Seconds();
+  return result;
+}
+
+double EstimateSecondsOfAStep(const Config& config, const SceneFacts& scene, const Dataset& data,
+                              int steps) {
+  const Stopwatch watch;
+  Trainer trainer(ForSteps(config, steps), scene, data, {});
+  const double of_step = trainer.TakeSteps(std::min(kTimed, steps));
+  // Set-up, and the measurement at the end, which takes about as long as these steps did.
+  const double all_else = watch.Seconds();
+  return of_step + all_else / steps;
+}
+
+}  // namespace nerf

@@ -1,0 +1,192 @@
+#include "nerf/pipeline/training_session.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
+#include "nerf/base/progress.h"
+#include "nerf/effects/depth_supervision.h"
+#include "nerf/model/checkpoint.h"
+#include "nerf/model/refined_poses.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/pipeline/budget_plan.h"
+#include "sfm/pose_input.h"
+#include "sfm/transforms_json.h"
+
+namespace nerf {
+
+namespace fs = std::filesystem;
+
+TrainingSession::TrainingSession(TrainingRequest request, const Stopwatch& watch,
+                                 PipelineListener listener)
+    : request_(std::move(request)), watch_(watch), listener_(std::move(listener)) {
+  const std::vector<std::string> effects = request_.effects.Assignments();
+  request_.assignments.insert(request_.assignments.end(), effects.begin(), effects.end());
+}
+
+Config TrainingSession::Configured(const std::string& preset) const {
+  std::vector<std::string> all = request_.assignments;
+  all.insert(all.end(), decisions_.Assignments().begin(), decisions_.Assignments().end());
+  return LoadConfig(preset, all);
+}
+
+void TrainingSession::WriteConfig() const {
+  WriteFileAtomically(ConfigPath(request_.run), JsonFromConfig(config_).dump(2) + "\n");
+}
+
+// A folder is a run's own once it holds a run's config.json. Somebody else's transforms.json there,
+// maybe the very input, is not to be written over.
+void TrainingSession::RefuseForeignFolder() const {
+  const fs::path& run = request_.run;
+  if (fs::exists(CheckpointPath(run))) {
+    throw InputError(
+        "{}: holds a run already; add --resume to go on with it, or choose another folder with -o",
+        run.string());
+  }
+  for (const fs::path& file : {PosesPath(run), MetricsPath(run)}) {
+    if (!fs::exists(file) || fs::exists(ConfigPath(run))) continue;
+    throw InputError("{}: is there already, and not from nerf train; choose another -o",
+                     file.string());
+  }
+}
+
+// A target is measured on photographs that training does not see.
+void TrainingSession::RequireValidation() const {
+  const auto validates = [](const auto& image) { return image.split == Split::kValidation; };
+  if (config_.train.target_psnr == 0) return;
+  if (std::ranges::any_of(scene_.posed.images, validates)) return;
+  throw InputError(
+      "train.target_psnr is measured on validation photographs, and there are none: set "
+      "data.validation_images to 1 or more, and take 16 photographs at least");
+}
+
+// Seconds of the time budget that are gone. Finding poses cannot be bounded: training gets at least
+// half of the budget.
+double TrainingSession::SpentSeconds() const {
+  const double budget = config_.train.time_budget, spent = watch_.Seconds();
+  if (budget == 0 || spent <= budget / 2) return spent;
+  listener_(Warning{fmt::format("{} of the time budget were gone before training; it still gets {}",
+                                FormatSeconds(spent), FormatSeconds(budget / 2))});
+  return budget / 2;
+}
+
+void TrainingSession::PrepareCapture() {
+  config_ = Configured(request_.preset);
+  RefuseForeignFolder();
+  sfm::FindInput(request_.input);  // a wrong input must not leave an empty run behind
+  scene_ = PrepareScene(request_.input, request_.run, config_.data, request_.threads, listener_);
+  RequireValidation();
+  if (request_.effects.inspect) {
+    const auto requested = NamedEffects(request_.preset, request_.assignments);
+    InspectScene(config_, requested, scene_, listener_);
+    decisions_ = EffectDecisions(scene_.inspection, requested);
+    config_ = Configured(request_.preset);
+  }
+  MakeOutputFolder(request_.run);
+  KeepSparsePoints(scene_.posed, config_, request_.run);
+  if (request_.effects.inspect) {
+    listener_(
+        CaptureInspected{&scene_.inspection, decisions_.Requested(), scene_.inspection_seconds});
+  }
+  // First, for it marks the folder as a run's own.
+  WriteConfig();
+  sfm::WriteTransformsJson(scene_.posed, PosesPath(request_.run));
+  // Read back, so that a run which resumes starts from the same numbers to the last bit.
+  posed_ = sfm::ReadTransformsJson(PosesPath(request_.run));
+}
+
+void TrainingSession::ReadPhotographs() {
+  ReportDataPlan(posed_, config_.data, NumThreads(), listener_);
+  data_ = LoadPhotographs(posed_, config_, scene_.normalized_from_world, request_.run, listener_);
+  facts_ = FactsOf(data_, scene_.normalized_from_world);
+}
+
+void TrainingSession::DecideEffects() {
+  if (!request_.effects.inspect) return;
+  facts_.exposure_stops = scene_.StopsOf(data_.train);
+  if (facts_.has_alpha) decisions_.DisableBackgroundForAlpha(listener_);
+  config_ = Configured(request_.preset);
+  const bool tries_depth = decisions_.IsOpen(kDepthSupervision);
+  if (tries_depth) AddSparseDepths(scene_.posed, scene_.normalized_from_world, data_);
+  decisions_.Try(config_, facts_, config_.train.time_budget - watch_.Seconds(), data_, listener_);
+  config_ = Configured(request_.preset);
+  WriteConfig();
+  WriteFileAtomically(request_.run / "effects.json",
+                      decisions_.Report(config_, scene_.inspection_seconds).dump(2) + "\n");
+  if (tries_depth && config_.effects.depth_supervision) {
+    // As a run that resumes reads them.
+    KeepSparsePoints(scene_.posed, config_, request_.run);
+    AddKeptPoints(posed_, scene_.normalized_from_world, request_.run, data_);
+  }
+}
+
+void TrainingSession::PlanTimeBudget() {
+  const double spent = SpentSeconds();
+  trainer_ = std::make_unique<Trainer>(config_, facts_, data_, request_.run, spent);
+  if (config_.train.time_budget == 0 || request_.preset_is_given) return;
+  const BudgetPlan plan = PlanBudget(*trainer_, config_.train.time_budget - spent);
+  listener_(BudgetPlanned{config_.train.time_budget, plan.preset, plan.steps});
+  if (plan.preset == request_.preset) return;
+  config_ = Configured(plan.preset);
+  WriteConfig();
+  trainer_ = std::make_unique<Trainer>(config_, facts_, data_, request_.run, SpentSeconds());
+}
+
+TrainSummary TrainingSession::Train(const std::atomic<bool>& stop) {
+  const TrainSummary summary =
+      trainer_->Run(stop, [this](const TrainerEvent& event) { listener_(event); });
+  ReportRefinedPoses();
+  listener_(TrainingEnded{summary, config_.train, request_.run});
+  return summary;
+}
+
+TrainSummary TrainingSession::Run(const std::atomic<bool>& stop) {
+  if (!trainer_) {
+    PrepareCapture();
+    ReadPhotographs();
+    DecideEffects();
+    PlanTimeBudget();
+  }
+  return Train(stop);
+}
+
+// Where poses were refined: how far, and RUN/refined_transforms.json.
+void TrainingSession::ReportRefinedPoses() const {
+  const Model& model = trainer_->GetModel();
+  if (!model.pose_refinement) return;
+  const SceneNormalization& normalized_from_world = model.scene.normalized_from_world;
+  PoseRefinementSummary summary = Summarize(*model.pose_refinement);
+  summary.median_shift = normalized_from_world.LengthWorldFromNormalized(summary.median_shift);
+  summary.most_shift = normalized_from_world.LengthWorldFromNormalized(summary.most_shift);
+  listener_(PosesRefined{summary});
+  sfm::WriteTransformsJson(RefinedPoses(model, posed_), RefinedPosesPath(request_.run));
+}
+
+std::unique_ptr<TrainingSession> TrainingSession::Resume(TrainingRequest request,
+                                                         const Stopwatch& watch,
+                                                         PipelineListener listener) {
+  auto session = std::make_unique<TrainingSession>(std::move(request), watch, std::move(listener));
+  TrainingSession& s = *session;
+  const fs::path& run = s.request_.run;
+  const Checkpoint checkpoint = ReadRunCheckpoint(run);
+  const Model model = ModelFromCheckpoint(checkpoint);
+  const int threads = NumThreads();
+  if (const int before = checkpoint.meta.value("threads", threads); before != threads) {
+    s.listener_(Warning{fmt::format(
+        "the run was on {} threads and goes on with {}; sums will round differently", before,
+        threads)});
+  }
+  s.config_ = model.config;
+  s.scene_.normalized_from_world = model.scene.normalized_from_world;
+  s.posed_ = sfm::ReadTransformsJson(PosesPath(run));
+  ReportMissing(s.posed_, s.listener_);
+  s.ReadPhotographs();
+  s.trainer_ = std::make_unique<Trainer>(checkpoint, s.data_, run, s.watch_.Seconds());
+  return session;
+}
+
+}  // namespace nerf
