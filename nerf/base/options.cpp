@@ -23,7 +23,8 @@ bool Range::Contains(double value) const {
   if (!std::isfinite(value)) return false;
   if (or_zero && value == 0) return true;
   if (!one_of.empty()) return std::ranges::find(one_of, value) != one_of.end();
-  return (low_is_open ? value > low : value >= low) && (high_is_open ? value < high : value <= high);
+  return (low_is_open ? value > low : value >= low) &&
+         (high_is_open ? value < high : value <= high);
 }
 
 std::string Range::Text() const {

@@ -31,7 +31,7 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool low_is_open = false, high_is_open = false;
-  bool or_zero = false;         // 0 too, which turns something off
+  bool or_zero = false;          // 0 too, which turns something off
   std::vector<double> one_of{};  // these alone; empty: all between low and high
 
   // Not for NaN and infinities.
@@ -73,6 +73,8 @@ struct AnyOption {
 
 // A block of options.
 template <class T>
-concept HasOptions = requires(T& options) { T::Options(options, internal::AnyOption()); };
+concept HasOptions = requires(T& options) {
+  T::Options(options, internal::AnyOption());
+};
 
 }  // namespace nerf

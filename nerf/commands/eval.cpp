@@ -69,8 +69,7 @@ void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const
 // Scores of the split's views; the contact sheet is written.
 Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
                          const fs::path& output) {
-  const std::vector<const PosedImage*> images =
-      ImagesOf(run.posed, SplitFromName(arguments.split));
+  const std::vector<const PosedImage*> images = ImagesOf(run.posed, SplitFromName(arguments.split));
   if (images.empty()) {
     throw InputError("{}: the run has no {} images; choose another --split", arguments.run,
                      arguments.split);
@@ -78,15 +77,15 @@ Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
   ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
   std::vector<ContactSheetRow> rows;
   std::int64_t done = 0;
-  const Evaluation evaluation = Evaluate(
-      *run.model, run.posed, images, {arguments.quality, arguments.fit_exposure, {}},
-      [&](const EvaluatedView& view) {
-        const std::string psnr = fmt::format("{:.2f} dB", view.score->psnr);
-        if (rows.size() < kMostRows) {
-          rows.push_back({view.image->name + "  " + psnr, *view.truth, *view.rendering});
-        }
-        progress.Update(++done, psnr);
-      });
+  const Evaluation evaluation =
+      Evaluate(*run.model, run.posed, images, {arguments.quality, arguments.fit_exposure, {}},
+               [&](const EvaluatedView& view) {
+                 const std::string psnr = fmt::format("{:.2f} dB", view.score->psnr);
+                 if (rows.size() < kMostRows) {
+                   rows.push_back({view.image->name + "  " + psnr, *view.truth, *view.rendering});
+                 }
+                 progress.Update(++done, psnr);
+               });
   progress.Finish();
   for (const std::string& reason : evaluation.unreadable) spdlog::warn("{}; left out", reason);
   if (!evaluation.unreadable.empty()) {

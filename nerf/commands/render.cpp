@@ -70,8 +70,8 @@ void Expose(const std::array<float, 3>& gains, const Eigen::Vector3f& background
   ApplyGains(gains, SeenThrough(view.opacity.pixels, {background.data(), 3}), view.rgb.pixels);
 }
 
-// The quality that is asked for, or the best at which a frame takes no longer than asked for. Prints
-// what it costs and loses, measured on the first of the views.
+// The quality that is asked for, or the best at which a frame takes no longer than asked for.
+// Prints what it costs and loses, measured on the first of the views.
 double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArguments& arguments) {
   if (!arguments.seconds_per_frame && arguments.quality == 1) return 1;
   const QualityProbe probe(*run.model, {shot.camera, shot.world_from_camera});
@@ -124,15 +124,16 @@ void RenderShots(const OpenedRun& run, const ShotList& list, const RenderArgumen
   for (const Shot& shot : list.shots) {
     for (const int factor : {8, 4}) {
       if (!arguments.preview) break;
-      WriteImage(output / (shot.name + "." + arguments.format),
-                 RenderPreview(
-                     *run.model->Renderer(quality), shot.camera, factor,
-                     scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
-                     background, scene.encoding));
+      WriteImage(
+          output / (shot.name + "." + arguments.format),
+          RenderPreview(*run.model->Renderer(quality), shot.camera, factor,
+                        scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
+                        background, scene.encoding));
     }
-    RenderedView view = run.model->Render(
-        {shot.camera, shot.world_from_camera, quality,
-         [&](std::int64_t of_this) { progress.Update(done + of_this, shot.name); }});
+    RenderedView view =
+        run.model->Render({shot.camera, shot.world_from_camera, quality, [&](std::int64_t of_this) {
+                             progress.Update(done + of_this, shot.name);
+                           }});
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
     if (gains) Expose(*gains, background, view);
     WriteShot(view, scene, arguments, output / shot.name);

@@ -88,8 +88,8 @@ TrainingRequest RequestOf(const TrainArguments& arguments, int threads) {
 void PrintConfigHelp() {
   fmt::print("| key | default | unit | values | meaning |\n|---|---|---|---|---|\n");
   for (const OptionHelp& option : ConfigHelp()) {
-    fmt::print("| `{}` | {} | {} | {} | {} |\n", option.key, option.value, option.unit, option.range,
-               option.help);
+    fmt::print("| `{}` | {} | {} | {} | {} |\n", option.key, option.value, option.unit,
+               option.range, option.help);
   }
 }
 
@@ -133,10 +133,9 @@ void AddTrainCommand(CLI::App& app) {
       ->allow_extra_args(false)
       ->take_all();
   command
-      ->add_option(
-          "--effects", arguments->effects,
-          "auto: as the capture calls for them; config: as configured; "
-          "+exposure,-view_dependence: these on and off, the others auto")
+      ->add_option("--effects", arguments->effects,
+                   "auto: as the capture calls for them; config: as configured; "
+                   "+exposure,-view_dependence: these on and off, the others auto")
       ->capture_default_str();
   command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
   command

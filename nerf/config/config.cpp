@@ -19,7 +19,8 @@ constexpr char kParentKey[] = "parent";
 const json& EffectsWithDefaults() {
   static const json all = [] {
     EffectsOptions effects;
-    EffectsOptions::VisitEffects(effects, [](const EffectDescriptor&, auto& block) { block.emplace(); });
+    EffectsOptions::VisitEffects(effects,
+                                 [](const EffectDescriptor&, auto& block) { block.emplace(); });
     return JsonFromOptions(effects);
   }();
   return all;
@@ -67,7 +68,8 @@ Config Checked(const json& document, const std::string& where) {
     throw InputError("{}: {}", where, error.what());
   }
   // A whole number that its option cannot hold comes back as another one.
-  if (const json::array_t changes = json::diff(document, JsonFromConfig(config)); !changes.empty()) {
+  if (const json::array_t changes = json::diff(document, JsonFromConfig(config));
+      !changes.empty()) {
     throw InputError("{}: {} is out of range", where, KeyFromPointer(changes[0]["path"]));
   }
   config.march.unbounded = config.effects.unbounded.has_value();

@@ -17,7 +17,8 @@ struct FieldOptions {
            "width of each hidden layer of the density and colour networks");
     option("geometry_features", o.geometry_features, "", Between(1, 256),
            "outputs of the density network that the colour network sees");
-    option("color_layers", o.color_layers, "", Between(0, 8), "hidden layers of the colour network");
+    option("color_layers", o.color_layers, "", Between(0, 8),
+           "hidden layers of the colour network");
   }
 };
 

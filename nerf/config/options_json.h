@@ -11,7 +11,8 @@
 
 namespace nerf {
 
-// Visitors of option blocks (nerf/base/options.h): to JSON and back, ranges, and a table for people.
+// Visitors of option blocks (nerf/base/options.h): to JSON and back, ranges, and a table for
+// people.
 
 template <HasOptions T>
 nlohmann::json JsonFromOptions(const T& options);
@@ -28,7 +29,7 @@ void CheckRanges(const T& options, const std::string& path);
 
 // A key as people read of it.
 struct OptionHelp {
-  std::string key;  // "march.near_distance"
+  std::string key;    // "march.near_distance"
   std::string value;  // its default, as JSON
   std::string unit, range, help;
 };
@@ -96,7 +97,8 @@ struct JsonReader {
   template <class T>
   void operator()(const char* name, std::optional<T>& block, const char*) const {
     block.reset();
-    if (!json.at(name).is_null()) OptionsFromJson(json.at(name), path + name + ".", block.emplace());
+    if (!json.at(name).is_null())
+      OptionsFromJson(json.at(name), path + name + ".", block.emplace());
   }
 };
 

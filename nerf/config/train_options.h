@@ -108,7 +108,8 @@ struct TrainOptions {
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
-    option("engine", o.engine, "fused kernels, or LibTorch, the definition they are tested against");
+    option("engine", o.engine,
+           "fused kernels, or LibTorch, the definition they are tested against");
     option("precision", o.precision,
            "factors of the field's matrix products in the fused engine; sums stay float");
     option("steps", o.steps, "steps", AtLeast(1), "length of a run without a time budget");

@@ -39,7 +39,7 @@ std::vector<float> Footprints(const RayBatch& rays, std::span<const std::int64_t
 }
 
 std::vector<float> AntiAliasingWeights(const kernels::HashGridLayout& layout,
-                               std::span<const float> footprint) {
+                                       std::span<const float> footprint) {
   const std::size_t levels = layout.levels.size();
   std::vector<float> weights(levels * footprint.size());
   for (std::size_t i = 0; i < footprint.size(); ++i) {
@@ -70,10 +70,11 @@ Verdict JudgeAntiAliasing(const PosedImages& posed) {
   }
   if (ratios.empty()) return Undecided(kAntiAliasing.name, "no sightings of points to tell from");
   const double median = Quantile(ratios, 0.5);
-  return Measured(kAntiAliasing.name, median, kScales,
-                  fmt::format("photographs show a point at scales {:.1f} to 1 apart (threshold {:.1f} "
-                              "to 1)",
-                              median, kScales));
+  return Measured(
+      kAntiAliasing.name, median, kScales,
+      fmt::format("photographs show a point at scales {:.1f} to 1 apart (threshold {:.1f} "
+                  "to 1)",
+                  median, kScales));
 }
 
 const EffectDescriptor kAntiAliasing = {

@@ -17,8 +17,8 @@ namespace nerf {
 // averaged with one value at each place. Source: Barron et al. 2023, "Zip-NeRF", section 3
 // (downweighting by erf), with one Gaussian at each sample's place.
 struct AntiAliasingOptions {
-  // More than one, for a sample in the middle of a pixel stands for all of it: 4 was best of 1, 2, 4
-  // and 8 on validation photographs, with 8.
+  // More than one, for a sample in the middle of a pixel stands for all of it: 4 was best of 1, 2,
+  // 4 and 8 on validation photographs, with 8.
   double pixels = 4;
 
   template <class Self, class Visitor>
@@ -33,11 +33,11 @@ struct AntiAliasingOptions {
 std::vector<float> Footprints(const RayBatch& rays, std::span<const std::int64_t> ray,
                               std::span<const float> t, const AntiAliasingOptions& options);
 
-// The weight of each level of the encoding, given the patch that a sample stands for: erf(1 / (sqrt(8) footprint resolution)), 1 for a
-// point.
+// The weight of each level of the encoding, given the patch that a sample stands for: erf(1 /
+// (sqrt(8) footprint resolution)), 1 for a point.
 //   footprint  [S]    returns [S, levels]
 std::vector<float> AntiAliasingWeights(const kernels::HashGridLayout& layout,
-                               std::span<const float> footprint);
+                                       std::span<const float> footprint);
 
 // How much the scale changes at which photographs show the same point: what is one pixel from far
 // away is many from nearby. Undecided where no point has a track.

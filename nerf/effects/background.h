@@ -8,8 +8,8 @@ namespace nerf {
 // Surroundings without end, such as a sky, that differ in each direction: a learned colour behind
 // everything (nerf/field/background.h).
 struct BackgroundOptions {
-  // Few photographs look into one direction: of a finer map each paints its own part (64 was best of
-  // 16, 32, 64 and 128 on validation photographs of generated captures).
+  // Few photographs look into one direction: of a finer map each paints its own part (64 was best
+  // of 16, 32, 64 and 128 on validation photographs of generated captures).
   int resolution = 64;
 
   template <class Self, class Visitor>

@@ -20,7 +20,7 @@ constexpr double kFewPhotographs = 15;  // that see a point, median
 }  // namespace
 
 void AddSparseDepths(const PosedImages& sparse, const SceneNormalization& normalized_from_world,
-                   Dataset& data) {
+                     Dataset& data) {
   std::map<std::string, View*> views;
   for (View& view : data.train) {
     views[view.name] = &view;
@@ -51,7 +51,8 @@ double DepthCost(double t, double target, const DepthSupervisionOptions& options
 }
 
 std::vector<float> DepthCosts(std::span<const float> t, std::span<const std::int64_t> ray,
-                                  std::span<const float> target, const DepthSupervisionOptions& options) {
+                              std::span<const float> target,
+                              const DepthSupervisionOptions& options) {
   std::vector<float> costs(t.size());
   for (std::size_t i = 0; i < t.size(); ++i) {
     const auto of_ray = static_cast<double>(target[ray[i]]);
@@ -78,10 +79,10 @@ Verdict JudgeDepthSupervision(const PosedImages& posed,
   }
   if (photographs.empty()) return Undecided(kDepthSupervision.name, "all points are far away");
   const double median = Quantile(photographs, 0.5);
-  Verdict verdict = Fact(
-      kDepthSupervision.name, median < kFewPhotographs, median,
-      fmt::format("a point is in the view of {:.0f} photographs (called for below {:.0f})", median,
-                  kFewPhotographs));
+  Verdict verdict =
+      Fact(kDepthSupervision.name, median < kFewPhotographs, median,
+           fmt::format("a point is in the view of {:.0f} photographs (called for below {:.0f})",
+                       median, kFewPhotographs));
   verdict.threshold = kFewPhotographs;
   return verdict;
 }

@@ -36,7 +36,7 @@ struct DepthSupervisionOptions {
 // photographs have seen within two pixels, in the pixel to which its camera projects them.
 //   sparse  with points and tracks; its images are the views by name
 void AddSparseDepths(const PosedImages& sparse, const SceneNormalization& normalized_from_world,
-                   Dataset& data);
+                     Dataset& data);
 
 // What it costs that light comes from a distance t where a point stands at `target`:
 // e^2 / (e^2 + delta^2) with e = t / target - 1. Far from the point as much as seeing nothing, 1:
@@ -48,7 +48,8 @@ double DepthCost(double t, double target, const DepthSupervisionOptions& options
 // cheap in fog before and behind the point.
 //   t, ray  [S], as in PackedSamples    target  [R] normalized units, 0: none
 std::vector<float> DepthCosts(std::span<const float> t, std::span<const std::int64_t> ray,
-                                  std::span<const float> target, const DepthSupervisionOptions& options);
+                              std::span<const float> target,
+                              const DepthSupervisionOptions& options);
 
 // Whether photographs alone leave open where matter stands, of what is not far.
 Verdict JudgeDepthSupervision(const PosedImages& posed,

@@ -9,8 +9,8 @@
 namespace nerf {
 namespace {
 
-constexpr double kPassingShare = 0.007;   // of sightings that show something else
-constexpr double kSomethingElse = 0.35;   // log light, and four standard deviations of the residuals
+constexpr double kPassingShare = 0.007;  // of sightings that show something else
+constexpr double kSomethingElse = 0.35;  // log light, and four standard deviations of the residuals
 
 }  // namespace
 

@@ -23,8 +23,8 @@ struct RobustOptions {
   }
 };
 
-// A ray's robust loss, and its derivative by the loss: the weight of the ray's gradients. Of numbers
-// or of tensors; >= 0.
+// A ray's robust loss, and its derivative by the loss: the weight of the ray's gradients. Of
+// numbers or of tensors; >= 0.
 template <class T>
 T RobustLoss(const T& loss, const RobustOptions& options) {
   return loss / (1 + loss / options.scale);

@@ -15,7 +15,8 @@ struct UnboundedOptions {
 };
 
 // Whether there is anything beyond a ball about what the cameras look at.
-//   hull  of photographs with alpha: a ball about what alpha leaves, radii; nullopt: it may reach far
+//   hull  of photographs with alpha: a ball about what alpha leaves, radii; nullopt: it may reach
+//   far
 Verdict JudgeUnbounded(const std::optional<Ball>& hull);
 //   shares  of photographs without alpha
 //   may_learn_background  else contracted space must hold what is far

@@ -11,8 +11,9 @@
 namespace nerf {
 namespace {
 
-constexpr std::size_t kFewestViews = 5;      // of a point
-constexpr double kViewDependentShare = 0.12;  // of the points, from which on the effect is called for
+constexpr std::size_t kFewestViews = 5;  // of a point
+constexpr double kViewDependentShare =
+    0.12;  // of the points, from which on the effect is called for
 
 }  // namespace
 

@@ -33,7 +33,7 @@ torch::Tensor Exposure::forward(const torch::Tensor& rgb, const torch::Tensor& p
 }
 
 torch::Tensor Exposure::DivideByGains(const torch::Tensor& background,
-                                  const torch::Tensor& photograph) {
+                                      const torch::Tensor& photograph) {
   return background / Gains().to(background.scalar_type()).index_select(0, photograph);
 }
 

@@ -47,7 +47,8 @@ double MedianOf(torch::Tensor values) { return values.median().item<double>(); }
 
 }  // namespace
 
-PoseRefinement::PoseRefinement(const std::vector<CameraPlace>& cameras, const PoseRefinementOptions& options)
+PoseRefinement::PoseRefinement(const std::vector<CameraPlace>& cameras,
+                               const PoseRefinementOptions& options)
     : rate_(options.rate) {
   TORCH_CHECK(!cameras.empty(), "PoseRefinement: no photographs");
   const auto count = static_cast<std::int64_t>(cameras.size());
@@ -62,7 +63,8 @@ PoseRefinement::PoseRefinement(const std::vector<CameraPlace>& cameras, const Po
   }
   twist_ = register_parameter("twist", torch::zeros({count, 6}));
   log_focal_ = register_parameter("log_focal", torch::zeros({lenses}));
-  similarities_ = register_buffer("similarities", DoublesOf(SimilarityBasis(cameras)).to(torch::kFloat));
+  similarities_ =
+      register_buffer("similarities", DoublesOf(SimilarityBasis(cameras)).to(torch::kFloat));
   axis_ = register_buffer("axis", DoublesOf(axes).to(torch::kFloat));
   lens_ = TensorOf(lens, {count}, torch::kLong).clone();
 }
@@ -76,14 +78,14 @@ torch::Tensor PoseRefinement::LogFocals() const { return rate_ * log_focal_; }
 
 // A focal length f times as long: pixels stand at (x, y, f) where they stood at (x, y, 1).
 torch::Tensor PoseRefinement::Zoomed(const torch::Tensor& direction, const torch::Tensor& axis,
-                            const torch::Tensor& log_f) {
+                                     const torch::Tensor& log_f) {
   const torch::Tensor along = (axis * direction).sum(1, true);
   const torch::Tensor length = (1 + torch::expm1(2 * log_f) * along.square()).sqrt();
   return (direction + torch::expm1(log_f) * along * axis) / length;
 }
 
 RefinedRays PoseRefinement::forward(const torch::Tensor& origin, const torch::Tensor& direction,
-                            const torch::Tensor& photograph) {
+                                    const torch::Tensor& photograph) {
   TORCH_CHECK(origin.sizes() == direction.sizes() && origin.size(0) == photograph.size(0),
               "PoseRefinement: origin ", origin.sizes(), ", direction ", direction.sizes(),
               " and photograph ", photograph.sizes(), " do not fit");
@@ -116,7 +118,7 @@ RayBatch WithRefinedRays(const RayBatch& rays, const RefinedRays& refined) {
 }
 
 Eigen::Isometry3d PoseRefinement::Refined(std::int64_t photograph,
-                                 const Eigen::Isometry3d& normalized_from_camera) const {
+                                          const Eigen::Isometry3d& normalized_from_camera) const {
   const torch::NoGradGuard no_grad;
   const torch::Tensor twist = Twists()[photograph].to(torch::kDouble).contiguous();
   const Eigen::Map<const Eigen::Matrix<double, 6, 1>> values(twist.data_ptr<double>());

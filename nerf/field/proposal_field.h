@@ -15,9 +15,9 @@ class ProposalField : public torch::nn::Module {
  public:
   ProposalField(const ProposalOptions& options, std::uint64_t seed);
 
-  // Its weights are raised to an exponent before rays are resampled by them (Annealing::proposal): 0
-  // spreads samples evenly, 1 follows the weights. A new network knows nothing, so training begins
-  // with 0.
+  // Its weights are raised to an exponent before rays are resampled by them (Annealing::proposal):
+  // 0 spreads samples evenly, 1 follows the weights. A new network knows nothing, so training
+  // begins with 0.
 
   // positions [S,3] in the unit cube -> [S], 1 / normalized scene unit. Differentiable in the
   // parameters.

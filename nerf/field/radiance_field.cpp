@@ -64,8 +64,7 @@ torch::Tensor RadianceField::Encode(const torch::Tensor& positions,
 }
 
 torch::Tensor RadianceField::ContractedDensity(const torch::Tensor& positions,
-                                               const torch::Tensor& level_weights,
-                                               double detail) {
+                                               const torch::Tensor& level_weights, double detail) {
   const torch::Tensor out = density_network_->forward(Encode(positions, level_weights, detail));
   return ActivateDensity(out.select(1, 0));
 }
@@ -76,8 +75,8 @@ torch::Tensor RadianceField::Density(const torch::Tensor& positions,
 }
 
 FieldOutput RadianceField::forward(const torch::Tensor& positions, const torch::Tensor& directions,
-                                   const torch::Tensor& ray,
-                                   const torch::Tensor& level_weights, double detail) {
+                                   const torch::Tensor& ray, const torch::Tensor& level_weights,
+                                   double detail) {
   const torch::Tensor out = density_network_->forward(Encode(positions, level_weights, detail));
   const torch::Tensor geometry = out.slice(1, 1);
   torch::Tensor color_input = geometry;

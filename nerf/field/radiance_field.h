@@ -28,9 +28,9 @@ class RadianceField : public torch::nn::Module {
                 ColorEncoding encoding, std::uint64_t seed,
                 ColorModel color_model = ColorModel::kViewDependent);
 
-  // `detail` in all of these: how much of the field is active, from 0 (the coarsest levels alone, no
-  // view dependence) to 1 (everything). Shape is found while only coarse positions can explain the
-  // photographs; fine levels and directions could explain each of them by itself. Source: the
+  // `detail` in all of these: how much of the field is active, from 0 (the coarsest levels alone,
+  // no view dependence) to 1 (everything). Shape is found while only coarse positions can explain
+  // the photographs; fine levels and directions could explain each of them by itself. Source: the
   // frequency regularisation of Yang et al. 2023 (FreeNeRF), on hash levels.
 
   // positions [S,3] in the unit cube -> [S], 1 / normalized scene unit

@@ -24,16 +24,16 @@ inline constexpr double kDeviationOfMedian = 1.48;
 struct CaptureEvidence {
   const PosedImages* posed = nullptr;
   PhotographFacts facts;
-  SceneNormalization frame;         // NormalizeScene; the identity where poses are not known
+  SceneNormalization frame;          // NormalizeScene; the identity where poses are not known
   bool may_learn_background = true;  // else contracted space must hold what is far
 
   // Why colours and tracks are not known, "no sparse points to tell from"; empty where they are.
   std::string unknown_because;
   bool has_poses = true;
-  bool has_points = false;    // enough of them
-  std::optional<Ball> hull;   // about what alpha leaves; nullopt: none, or it may reach far
-  PointShares shares;         // where there are points and no alpha
-  TrackColors colors;         // these two where colours are known
+  bool has_points = false;   // enough of them
+  std::optional<Ball> hull;  // about what alpha leaves; nullopt: none, or it may reach far
+  PointShares shares;        // where there are points and no alpha
+  TrackColors colors;        // these two where colours are known
   PhotographFit fit;
   // Exposure of each photograph against their mean, log2 of light; empty: unknown.
   std::vector<double> stops;

@@ -45,9 +45,9 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   Model model;
   model.config = config;
   model.scene = scene;
-  model.field = std::make_shared<RadianceField>(config.encoding, config.field, scene.encoding,
-                                                config.train.seed,
-                                                ColorModelOf(config.effects.view_dependence.has_value()));
+  model.field = std::make_shared<RadianceField>(
+      config.encoding, config.field, scene.encoding, config.train.seed,
+      ColorModelOf(config.effects.view_dependence.has_value()));
   model.grid = std::make_shared<OccupancyGrid>(config.occupancy, config.march.StepLength());
   if (UsesProposal(config.march, scene.has_alpha)) {
     model.proposal = std::make_shared<ProposalField>(config.proposal, config.train.seed);
@@ -66,7 +66,8 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
     if (!scene.exposure_stops.empty()) model.exposure->Start(scene.exposure_stops);
   }
   if (config.effects.pose_refinement) {
-    model.pose_refinement = std::make_shared<PoseRefinement>(scene.places, *config.effects.pose_refinement);
+    model.pose_refinement =
+        std::make_shared<PoseRefinement>(scene.places, *config.effects.pose_refinement);
   } else {
     model.scene.places.clear();  // not needed
   }

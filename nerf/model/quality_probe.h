@@ -14,8 +14,8 @@ struct MeasuredQuality {
   double psnr = 0;  // dB, against the exact picture of the same view; infinite where they are equal
 };
 
-// Measures on strips of a view, about an eighth of it, how long rendering qualities take and how far
-// they are from the exact picture.
+// Measures on strips of a view, about an eighth of it, how long rendering qualities take and how
+// far they are from the exact picture.
 class QualityProbe {
  public:
   // `model` must outlive it. Renders the strips exactly.

@@ -15,9 +15,9 @@ PosedImages RefinedPoses(const Model& model, PosedImages posed) {
   for (PosedImage& image : posed.images) {
     const auto found = std::ranges::find(names, image.name);
     if (found == names.end()) continue;  // held out: as it was
-    image.world_from_camera = normalized_from_world.WorldFromCamera(
-        model.pose_refinement->Refined(found - names.begin(),
-                             normalized_from_world.NormalizedFromCamera(image.world_from_camera)));
+    image.world_from_camera = normalized_from_world.WorldFromCamera(model.pose_refinement->Refined(
+        found - names.begin(),
+        normalized_from_world.NormalizedFromCamera(image.world_from_camera)));
   }
   const torch::Tensor factors = model.pose_refinement->LogFocals().detach().exp();
   for (std::size_t k = 0; k < posed.cameras.size(); ++k) {

@@ -22,13 +22,16 @@ constexpr double kCostOfFast = 0.55, kCostOfAccurate = 1.25;
 
 }  // namespace
 
-BudgetPlan PlanBudget(Trainer& balanced, double seconds) {
-  balanced.TakeSteps(kFirstSteps);
-  const double of_step = std::max(1e-6, balanced.TakeSteps(kTimedSteps));
-  const double steps = seconds / of_step;
+BudgetPlan PlanFor(double seconds, double seconds_a_step) {
+  const double steps = seconds / std::max(1e-6, seconds_a_step);
   if (steps < kStepsOfSmallBatches) return {"fast", steps / kCostOfFast};
   if (steps < kStepsOfLargeTables) return {"balanced", steps};
   return {"accurate", steps / kCostOfAccurate};
+}
+
+BudgetPlan PlanBudget(Trainer& balanced, double seconds) {
+  balanced.TakeSteps(kFirstSteps);
+  return PlanFor(seconds, balanced.TakeSteps(kTimedSteps));
 }
 
 }  // namespace nerf

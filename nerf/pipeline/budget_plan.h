@@ -12,10 +12,14 @@ struct BudgetPlan {
   double steps = 0;    // that there is time for, about
 };
 
-// Times some steps of a trainer of the preset `balanced` (they are its first, and not lost where
-// that preset is chosen). Where there is time for few of them, the many small steps of `fast` learn
-// more; where there is time for more than small hash tables make use of, `accurate` does.
-//   seconds  what is left of the budget
+// Where there is time for few steps, the many small ones of `fast` learn more than those of
+// `balanced`; where there is time for more than small hash tables make use of, `accurate` does.
+//   seconds          what is left of the budget
+//   seconds_a_step   of the preset balanced
+BudgetPlan PlanFor(double seconds, double seconds_a_step);
+
+// PlanFor the speed of a trainer of the preset `balanced`: times some of its steps (they are its
+// first, and not lost where that preset is chosen).
 BudgetPlan PlanBudget(Trainer& balanced, double seconds);
 
 }  // namespace nerf

@@ -9,9 +9,7 @@ namespace nerf {
 namespace {
 
 // Properties of the photographs are not chosen.
-bool IsChosen(const Verdict& verdict) {
-  return verdict.effect != kAlpha && verdict.effect != kHdr;
-}
+bool IsChosen(const Verdict& verdict) { return verdict.effect != kAlpha && verdict.effect != kHdr; }
 
 }  // namespace
 
@@ -76,8 +74,8 @@ nlohmann::json EffectDecisions::Report(const Config& config, double inspection_s
                         {"sure", v.Sure()},
                         {"asked_for", requested_.contains(v.effect)}});
   }
-  return {{"verdicts", verdicts},           {"simulated", simulated},
-          {"asked_for", requested_},        {"assignments", assignments_},
+  return {{"verdicts", verdicts},          {"simulated", simulated},
+          {"asked_for", requested_},       {"assignments", assignments_},
           {"seconds", inspection_seconds}, {"trial_seconds", trial_seconds_}};
 }
 

@@ -50,7 +50,10 @@ double EstimateOrZero(const Config& config, const SceneFacts& scene, const Datas
 class Trials {
  public:
   Trials(const Config& config, const SceneFacts& scene, double seconds_left, const Dataset& data)
-      : scene_(scene), data_(data), allowance_(config.train, seconds_left, kSamples), best_(config) {
+      : scene_(scene),
+        data_(data),
+        allowance_(config.train, seconds_left, kSamples),
+        best_(config) {
     best_.train.samples_per_batch = kSamples;
   }
 

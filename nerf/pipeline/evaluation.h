@@ -54,8 +54,8 @@ struct Evaluation {
 struct EvaluatedView {
   const PosedImage* image = nullptr;
   const Image* truth = nullptr;      // on white where it has alpha
-  const Image* rendering = nullptr;  // at the photograph's exposure where that is fitted; pixels that
-                                     // a mask ignores are the truth's
+  const Image* rendering = nullptr;  // at the photograph's exposure where that is fitted; pixels
+                                     // that a mask ignores are the truth's
   const ViewScore* score = nullptr;
 };
 

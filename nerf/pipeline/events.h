@@ -68,10 +68,9 @@ struct TrainingEnded {
   std::filesystem::path run;
 };
 
-using PipelineEvent =
-    std::variant<Warning, PosesFound, InspectionProgress, CaptureInspected, DataPlanned,
-                 VerdictReached, EffectsTried, EffectsUndecided, BudgetPlanned, TrainerEvent,
-                 PosesRefined, TrainingEnded>;
+using PipelineEvent = std::variant<Warning, PosesFound, InspectionProgress, CaptureInspected,
+                                   DataPlanned, VerdictReached, EffectsTried, EffectsUndecided,
+                                   BudgetPlanned, TrainerEvent, PosesRefined, TrainingEnded>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // The listener of those who are not interested.

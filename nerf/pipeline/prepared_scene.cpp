@@ -95,7 +95,11 @@ void InspectScene(const Config& config, const std::set<std::string>& requested,
   const auto photographs = static_cast<std::int64_t>(scene.posed.images.size());
   const bool may_learn = !requested.contains(kBackground.name) || config.effects.background;
   scene.inspection = Inspect(
-      scene.posed, [&](int read) { listener(InspectionProgress{read, photographs}); }, may_learn);
+      scene.posed,
+      [&](int read) {
+        listener(InspectionProgress{read, photographs});
+      },
+      may_learn);
   scene.normalized_from_world = scene.inspection.normalized_from_world;
   scene.inspection_seconds = watch.Seconds();
   listener(InspectionProgress{photographs, photographs});

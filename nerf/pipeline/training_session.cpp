@@ -176,9 +176,9 @@ std::unique_ptr<TrainingSession> TrainingSession::Resume(TrainingRequest request
   const Model model = ModelFromCheckpoint(checkpoint);
   const int threads = NumThreads();
   if (const int before = checkpoint.meta.value("threads", threads); before != threads) {
-    s.listener_(Warning{fmt::format(
-        "the run was on {} threads and goes on with {}; sums will round differently", before,
-        threads)});
+    s.listener_(Warning{
+        fmt::format("the run was on {} threads and goes on with {}; sums will round differently",
+                    before, threads)});
   }
   s.config_ = model.config;
   s.scene_.normalized_from_world = model.scene.normalized_from_world;

@@ -22,9 +22,9 @@ struct TileRows {
 
 // Densities of the samples of a tile, and what the way back needs.
 struct DensityTile {
-  std::vector<float> footprint;  // [S] to be set before, where pixels see patches; or empty
+  std::vector<float> footprint;      // [S] to be set before, where pixels see patches; or empty
   std::vector<float> level_weights;  // [S, levels] anti-aliasing weights; or empty
-  std::vector<float> sigma;      // [S]
+  std::vector<float> sigma;          // [S]
   TileRows activations;
   StageSeconds seconds;  // so far, for encoding and networks
 };

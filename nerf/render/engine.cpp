@@ -7,8 +7,10 @@ namespace nerf {
 
 std::unique_ptr<Engine> MakeEngine(const ModelParts& parts) {
   switch (parts.config.train.engine) {
-    case EngineKind::kFused: return std::make_unique<FusedEngine>(parts);
-    case EngineKind::kLibTorch: return std::make_unique<LibTorchEngine>(parts);
+    case EngineKind::kFused:
+      return std::make_unique<FusedEngine>(parts);
+    case EngineKind::kLibTorch:
+      return std::make_unique<LibTorchEngine>(parts);
   }
   TORCH_CHECK(false, "MakeEngine: no such engine");
 }

@@ -14,9 +14,9 @@ namespace nerf {
 // Where a training stands when it takes a step; handed down to whatever depends on it.
 struct StepContext {
   std::int64_t step = 0;
-  std::uint64_t seed = 1;            // of the run
-  double progress = 1;               // of the training, in [0,1]
-  double learning_rate_factor = 1;   // of the configured learning rate
+  std::uint64_t seed = 1;           // of the run
+  double progress = 1;              // of the training, in [0,1]
+  double learning_rate_factor = 1;  // of the configured learning rate
   Annealing annealing;
 };
 
@@ -24,7 +24,8 @@ struct StepResult {
   double loss = 0;           // mean over rays and channels
   double squared_error = 0;  // mean over rays and channels, for PSNR
   std::int64_t marched = 0;  // samples placed
-  std::int64_t shaded = 0;   // of them, samples that light reaches: gradients were computed for these
+  std::int64_t shaded =
+      0;  // of them, samples that light reaches: gradients were computed for these
   // [R] squared error of each ray, mean over channels; under a robust loss times the ray's weight,
   // so that rays are not drawn where somebody passes by.
   std::vector<float> ray_error;

@@ -9,14 +9,15 @@
 
 namespace nerf {
 
-// As nerf/effects/depth_supervision.h defines it. In the backward pass the samples' costs stand for their distances,
-// which no other loss asks about.
+// As nerf/effects/depth_supervision.h defines it. In the backward pass the samples' costs stand for
+// their distances, which no other loss asks about.
 void FusedEngine::AddDepthLoss(const TargetBatch& batch, std::int64_t first, Worker& worker) const {
   const FusedTile& tile = worker.tile;
   const std::int64_t count = tile.Rays(), size = tile.samples.Size();
   const double weight = parts_.config.effects.depth_supervision->weight;
   const auto slope = static_cast<float>(weight / static_cast<double>(batch.rays.Size()));
-  worker.costs = DepthCosts(tile.samples.t, tile.ray, batch.distance, *parts_.config.effects.depth_supervision);
+  worker.costs = DepthCosts(tile.samples.t, tile.ray, batch.distance,
+                            *parts_.config.effects.depth_supervision);
   worker.weights.resize(size);
   kernels::WeightsForward<float>(tile.ray_begin, tile.field.density.sigma, tile.samples.dt,
                                  worker.weights, 0, count);
@@ -36,6 +37,7 @@ void FusedEngine::AddDepthLoss(const TargetBatch& batch, std::int64_t first, Wor
 void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
                            std::span<float> ray_error) const {
   FusedTile& tile = worker.tile;
+  LapTimer timer;
   const std::int64_t count = tile.Rays(), size = tile.samples.Size();
   if (!worker.pixels.Add(pixel_model_, batch, first, tile.rgb, tile.opacity, ray_error)) {
     throw NonFiniteError(
@@ -63,8 +65,8 @@ void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker&
                               of_ray(worker.dL_dbackground, 0), worker.background);
     }
   }
+  timer.Lap(tile.compositing_seconds);
   if (forward_.Proposal()) {
-    LapTimer timer;
     forward_.Proposal()->Backward(batch.rays.Size(), tile.ray_begin, tile.field.density.sigma,
                                   tile.samples.dt, tile.proposal, worker.dL_dsigma,
                                   worker.proposal);

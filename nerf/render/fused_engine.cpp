@@ -60,10 +60,10 @@ StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch, const Step
   const std::int64_t count = batch.rays.Size();
   RefinedRays refined;
   if (parts_.pose_refinement) {
-    refined = parts_.pose_refinement->forward(
-        TensorOf(batch.rays.origin, {count, 3}, torch::kFloat),
-        TensorOf(batch.rays.direction, {count, 3}, torch::kFloat),
-        TensorOf(batch.photograph, {count}, torch::kLong));
+    refined =
+        parts_.pose_refinement->forward(TensorOf(batch.rays.origin, {count, 3}, torch::kFloat),
+                                        TensorOf(batch.rays.direction, {count, 3}, torch::kFloat),
+                                        TensorOf(batch.photograph, {count}, torch::kLong));
     seen.rays = WithRefinedRays(batch.rays, refined);
   }
   if (parts_.background) seen.rays = WithBackground(seen.rays, background_);
@@ -100,9 +100,8 @@ void FusedEngine::LearnShare(const TargetBatch& batch, std::int64_t first, std::
   worker.t.clear();
   worker.dL_dlog_sigma.clear();
   worker.tile.placed = worker.tile.shaded = 0;
-  worker.tile.sampling_seconds = 0;
+  worker.tile.sampling_seconds = worker.tile.compositing_seconds = 0;
   worker.tile.field.density.seconds = {};
-  LapTimer timer;
   forward_.Field().Clear(worker.field);
   if (forward_.Proposal()) forward_.Proposal()->Clear(worker.proposal);
   while (first < last) {
@@ -110,9 +109,7 @@ void FusedEngine::LearnShare(const TargetBatch& batch, std::int64_t first, std::
     Backward(batch, first, worker, ray_error);
     first = next;
   }
-  double all = 0;
-  timer.Lap(all);
-  worker.seconds = worker.tile.Seconds(all);
+  worker.seconds = worker.tile.Seconds();
 }
 
 StepResult FusedEngine::LearnFrom(const TargetBatch& batch) {

@@ -99,12 +99,14 @@ std::int64_t FusedForward::Run(const RayBatch& rays, std::int64_t first, std::in
   tile.shaded += tile.samples.Size();
   field_.Radiance(tile.samples.Size(), tile.ray, rays.direction, tile.field);
 
+  LapTimer compositing;
   const std::int64_t count = tile.Rays();
   tile.rgb.resize(3 * count);
   tile.opacity.resize(count);
   tile.depth.resize(count);
   kernels::CompositeForward<float>(tile.Segments(rays, first), {tile.rgb, tile.opacity, tile.depth},
                                    0, count);
+  compositing.Lap(tile.compositing_seconds);
   return end;
 }
 

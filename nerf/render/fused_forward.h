@@ -8,8 +8,8 @@
 
 #include "nerf/base/stopwatch.h"
 #include "nerf/kernels/volume_rendering.h"
-#include "nerf/render/model_parts.h"
 #include "nerf/render/field_tile.h"
+#include "nerf/render/model_parts.h"
 #include "nerf/render/proposal_tile.h"
 
 namespace nerf {
@@ -22,15 +22,14 @@ struct FusedTile {
   std::vector<std::int64_t> ray;        // [S] of the batch
   std::vector<std::int64_t> kept_of_ray, kept;
   FieldTile field;
-  std::vector<float> rgb, opacity, depth;  // [R,3], [R], [R]
-  std::int64_t placed = 0, shaded = 0;     // samples so far
-  double sampling_seconds = 0;             // so far
+  std::vector<float> rgb, opacity, depth;                // [R,3], [R], [R]
+  std::int64_t placed = 0, shaded = 0;                   // samples so far
+  double sampling_seconds = 0, compositing_seconds = 0;  // so far
 
-  // Of a tile that has taken `all` seconds so far.
-  StageSeconds Seconds(double all) const {
+  StageSeconds Seconds() const {
     StageSeconds seconds = field.density.seconds;
     seconds.sampling = sampling_seconds;
-    seconds.SetAll(all);
+    seconds.compositing = compositing_seconds;
     return seconds;
   }
   std::int64_t Rays() const { return static_cast<std::int64_t>(ray_begin.size()) - 1; }

@@ -5,7 +5,6 @@
 #include <mutex>
 
 #include "nerf/base/parallel.h"
-#include "nerf/base/stopwatch.h"
 #include "nerf/field/background.h"
 #include "nerf/render/background_rays.h"
 
@@ -35,7 +34,6 @@ RenderOutput FusedRenderer::RenderRays(const RayBatch& rays) const {
   constexpr std::int64_t kChunk = 256;
   ParallelForEach((count + kChunk - 1) / kChunk, [&](std::int64_t chunk) {
     FusedTile tile;
-    LapTimer timer;
     const std::int64_t last = std::min(count, (chunk + 1) * kChunk);
     for (std::int64_t first = chunk * kChunk; first < last;) {
       const std::int64_t next = forward_.Run(rays, first, last, tile);
@@ -48,10 +46,8 @@ RenderOutput FusedRenderer::RenderRays(const RayBatch& rays) const {
       first = next;
     }
     samples += tile.placed;
-    double all = 0;
-    timer.Lap(all);
     const std::lock_guard lock(adding);
-    out.seconds.Add(tile.Seconds(all), 1.0 / NumThreads());
+    out.seconds.Add(tile.Seconds(), 1.0 / NumThreads());
   });
   out.samples = samples;
   return out;

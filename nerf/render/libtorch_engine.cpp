@@ -5,8 +5,8 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
-#include "nerf/effects/depth_supervision.h"
 #include "nerf/effects/anti_aliasing.h"
+#include "nerf/effects/depth_supervision.h"
 #include "nerf/field/background.h"
 #include "nerf/field/exposure.h"
 #include "nerf/field/pose_refinement.h"
@@ -87,7 +87,7 @@ std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
 // The samples in front of the point where a ray's transmittance falls below the bound: found from
 // densities alone and without gradients, so that colour and gradients are computed for no other.
 PackedSamples LibTorchEngine::VisibleSamples(const RayBatch& rays, const PackedSamples& samples,
-                                              double detail) const {
+                                             double detail) const {
   const std::vector<float> sigma =
       Densities(samples.position, FootprintsOf(rays, samples), detail, &RadianceField::Density);
   std::vector<std::int64_t> kept(samples.Rays());
@@ -146,9 +146,9 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays,
     positions = positions + (moving - moving.detach());
   }
   const std::vector<float> footprint = FootprintsOf(rays, out.samples);
-  out.field = parts_.field->forward(positions, directions, ray,
-                                    footprint.empty() ? torch::Tensor() : AntiAliasingWeightsOf(footprint),
-                                    annealing.detail);
+  out.field = parts_.field->forward(
+      positions, directions, ray,
+      footprint.empty() ? torch::Tensor() : AntiAliasingWeightsOf(footprint), annealing.detail);
   ScaleGradients(out.field, t, parts_.config.gradient_scaling.full_distance);
 
   out.pixels =
@@ -180,8 +180,8 @@ RenderOutput LibTorchEngine::Render(const RayBatch& rays) const {
   return result;
 }
 
-// As nerf/effects/depth_supervision.h defines it: what the samples cost is rendered like a colour, before the
-// cost of seeing nothing.
+// As nerf/effects/depth_supervision.h defines it: what the samples cost is rendered like a colour,
+// before the cost of seeing nothing.
 torch::Tensor LibTorchEngine::DepthLoss(const TargetBatch& batch, const Evaluated& out) const {
   const torch::Dtype dtype = parts_.field->Dtype();
   const std::int64_t count = batch.rays.Size(), size = out.samples.Size();
@@ -233,8 +233,8 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch,
   }
   torch::Tensor total = loss;
   if (parts_.proposal) {
-    total = loss + ProposalLoss(out.proposed, out.samples, out.field.sigma,
-                                parts_.config.proposal, parts_.config.march);
+    total = loss + ProposalLoss(out.proposed, out.samples, out.field.sigma, parts_.config.proposal,
+                                parts_.config.march);
   }
   // A batch whose rays meet no occupied cell depends on no parameter.
   if (total.requires_grad()) total.backward();

@@ -26,7 +26,7 @@ torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& tar
 }
 
 torch::Tensor RobustRayWeights(const torch::Tensor& predicted, const torch::Tensor& target,
-                         const LossOptions& options, const RobustOptions& robust) {
+                               const LossOptions& options, const RobustOptions& robust) {
   const torch::NoGradGuard no_grad;
   return RobustWeight(LossOfRays(predicted, target, options), robust);
 }

@@ -17,6 +17,6 @@ torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& tar
 
 // The weight of each ray's gradients under a robust loss, [R]: RobustWeight(l). Without gradients.
 torch::Tensor RobustRayWeights(const torch::Tensor& predicted, const torch::Tensor& target,
-                         const LossOptions& options, const RobustOptions& robust);
+                               const LossOptions& options, const RobustOptions& robust);
 
 }  // namespace nerf

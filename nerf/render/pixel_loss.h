@@ -22,7 +22,7 @@ struct PixelModel {
   std::optional<RobustOptions> robust;
   std::vector<float> gain;  // [photographs,3] of Exposure; empty where that is not simulated
   bool saturates = false;   // where it is: as Exposure::Saturates
-  bool unexposed = false;   // where it is: rays have backgrounds as Exposure::DivideByGains has them
+  bool unexposed = false;  // where it is: rays have backgrounds as Exposure::DivideByGains has them
 };
 
 // What the pixels of a tile cost, and which way each should change: Exposure, ColorLoss and their

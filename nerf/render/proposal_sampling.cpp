@@ -105,9 +105,8 @@ ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
     for (std::int64_t r = first; r < last; ++r) {
       CutByWeights(std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1),
                    Span<const float>(weights).subspan(r * coarse, coarse),
-                   static_cast<float>(exponent),
-                   static_cast<float>(options.padding), rays.jitter[r],
-                   std::span(out.edges).subspan(r * (fine + 1), fine + 1));
+                   static_cast<float>(exponent), static_cast<float>(options.padding),
+                   rays.jitter[r], std::span(out.edges).subspan(r * (fine + 1), fine + 1));
     }
   });
   out.samples = PackIntervals(rays, march, out.edges, fine);

@@ -18,8 +18,8 @@ struct RenderOutput {
   StageSeconds seconds;        // nothing where the renderer does not take its stages' time
 };
 
-// Anything that turns rays into colours. Rendering changes nothing: it is safe from any thread as long
-// as nobody changes the model.
+// Anything that turns rays into colours. Rendering changes nothing: it is safe from any thread as
+// long as nobody changes the model.
 class RayRenderer {
  public:
   virtual ~RayRenderer() = default;

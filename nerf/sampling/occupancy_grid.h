@@ -20,7 +20,8 @@ struct OccupancyOptions {
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
-    option("resolution", o.resolution, "cells", Between(2, 512), "along an axis of contracted space");
+    option("resolution", o.resolution, "cells", Between(2, 512),
+           "along an axis of contracted space");
     option("decay", o.decay, "", StrictlyBetween(0, 1),
            "of a cell's remembered density each time that it is drawn again");
     option("threshold", o.threshold, "opacity", StrictlyBetween(0, 1),

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "nerf/base/options.h"
-
 #include "nerf/geometry/rays.h"
 #include "nerf/sampling/occupancy_grid.h"
 #include "nerf/sampling/packed_samples.h"
@@ -15,7 +14,7 @@ namespace nerf {
 
 // What places the samples of a ray.
 enum class SamplerKind {
-  kAuto,       // the grid for objects cut out by alpha, whose surroundings are empty, else a proposal
+  kAuto,  // the grid for objects cut out by alpha, whose surroundings are empty, else a proposal
   kOccupancy,  // the occupancy grid
   kProposal,   // a proposal network
 };

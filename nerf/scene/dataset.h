@@ -25,7 +25,8 @@ struct DataOptions {
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
-    option("downscale", o.downscale, "", AtLeast(1), "photographs are area-averaged by this factor");
+    option("downscale", o.downscale, "", AtLeast(1),
+           "photographs are area-averaged by this factor");
     option("test_every", o.test_every, "", ZeroOr(AtLeast(2)),
            "hold out images 0, 8, 16, ... by name; 0: none");
     option("validation_images", o.validation_images, "", AtLeast(0),

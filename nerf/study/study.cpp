@@ -138,22 +138,22 @@ Config Study::ConfigOf(const StudySetting& setting, double seconds) const {
   return LoadConfig(setting.preset, assignments);
 }
 
-// The key "qualities" of a setting: PSNR, SSIM and seconds a frame at each rendering quality. Writes
-// its crop.
+// The key "qualities" of a setting: PSNR, SSIM and seconds a frame at each rendering quality.
+// Writes its crop.
 json Study::EvaluateQualities(const ModelSnapshot& model, const std::string& name) const {
   json qualities = json::array();
   for (const double quality : kQualities) {
     // A field that is hardly trained can take minutes a frame: one quality shows that.
     if (quality < 1 && qualities[0]["seconds_per_frame"] > kSlowestFrame) break;
-    const Evaluation evaluation = Evaluate(
-        model, scene_.posed, held_out_, {quality, false, options_.downscale},
-        [&](const EvaluatedView& view) {
-          if (quality != 1 || view.image != held_out_.front()) return;
-          const Patch patch = BusiestPatch(*view.truth);
-          MakeOutputFolder(folder_ / "crops");
-          WriteImage(folder_ / "crops" / (name + ".png"), Crop(*view.rendering, patch));
-          WriteImage(folder_ / "crops" / "truth.png", Crop(*view.truth, patch));
-        });
+    const Evaluation evaluation =
+        Evaluate(model, scene_.posed, held_out_, {quality, false, options_.downscale},
+                 [&](const EvaluatedView& view) {
+                   if (quality != 1 || view.image != held_out_.front()) return;
+                   const Patch patch = BusiestPatch(*view.truth);
+                   MakeOutputFolder(folder_ / "crops");
+                   WriteImage(folder_ / "crops" / (name + ".png"), Crop(*view.rendering, patch));
+                   WriteImage(folder_ / "crops" / "truth.png", Crop(*view.truth, patch));
+                 });
     if (evaluation.scores.empty()) throw InputError("{}", evaluation.unreadable.front());
     const ViewScore mean = evaluation.Mean();
     qualities.push_back({{"quality", quality},

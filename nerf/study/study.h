@@ -22,8 +22,9 @@ struct StudyOptions {
 };
 
 // Trains every setting for its share of the budget, with the effects that the capture calls for, as
-// `nerf train` does, and evaluates it on held-out photographs at several rendering qualities. Writes
-// study.json after each setting, and goes on where an earlier call with the same options stopped.
+// `nerf train` does, and evaluates it on held-out photographs at several rendering qualities.
+// Writes study.json after each setting, and goes on where an earlier call with the same options
+// stopped.
 class Study {
  public:
   //   scene     prepared with the splits of the preset balanced, and inspected

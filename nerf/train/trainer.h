@@ -15,10 +15,10 @@ namespace nerf {
 
 // What a training reports while it runs, in the thread that trains.
 struct StepTaken {
-  std::int64_t step = 0;         // steps so far
-  double spent_seconds = 0;      // of the whole command
-  double loss = 0;               // of this step
-  double rays_per_second = 0;    // of this step
+  std::int64_t step = 0;                // steps so far
+  double spent_seconds = 0;             // of the whole command
+  double loss = 0;                      // of this step
+  double rays_per_second = 0;           // of this step
   const QualityCurve* curve = nullptr;  // of the validations so far
 };
 struct Validated {
@@ -59,9 +59,9 @@ class Trainer {
   // Returns the mean seconds of those that were taken; 0 where none was.
   double TakeSteps(int steps);
 
-  // Trains until config.train.steps, the end of the time budget, the target PSNR, or until `stop` is
-  // set; then saves and returns.
-  // Throws NonFiniteError naming the step, ray and stage; the last good checkpoint stays.
+  // Trains until config.train.steps, the end of the time budget, the target PSNR, or until `stop`
+  // is set; then saves and returns. Throws NonFiniteError naming the step, ray and stage; the last
+  // good checkpoint stays.
   TrainSummary Run(const std::atomic<bool>& stop, const TrainerListener& listener = {});
 
   // dB, on a fixed sample of validation pixels, of which there must be some, each photograph at its

@@ -45,7 +45,7 @@ Trainer::State::State(Model model_in, const Dataset& data_in, std::filesystem::p
       run(std::move(run_in)),
       sampler(data.train, Options().error_driven_share,
               model.config.effects.depth_supervision ? model.config.effects.depth_supervision->share
-                                                      : 0.0),
+                                                     : 0.0),
       optimizer(NamedParameters(model), model.config.optimizer),
       validation(data.validation, Options().seed),
       pace(Options(), spent),
@@ -100,8 +100,7 @@ StepContext Trainer::State::Context() const {
   context.step = step;
   context.seed = Options().seed;
   context.progress = pace.Progress(step);
-  context.learning_rate_factor =
-      LearningRateFactor(model.config.schedule, step, context.progress);
+  context.learning_rate_factor = LearningRateFactor(model.config.schedule, step, context.progress);
   context.annealing = AnnealingAt(model, step);
   return context;
 }

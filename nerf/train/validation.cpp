@@ -87,7 +87,7 @@ RayBatch Validation::Rays(const Model& model) const {
   const torch::Tensor zoomed = PoseRefinement::Zoomed(direction, rows(axis_, 3), rows(log_f, 1));
   const torch::Tensor is_known = rows(known, 1) > 0.5;
   return WithRefinedRays(batch_.rays, {torch::where(is_known, refined.origin, origin),
-                                        torch::where(is_known, refined.direction, zoomed)});
+                                       torch::where(is_known, refined.direction, zoomed)});
 }
 
 double Validation::Psnr(const Model& model, bool fit_exposure) const {

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "nerf/render/view_renderer.h"
 #include "nerf/render/engine.h"
+#include "nerf/render/view_renderer.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/pixel_sampler.h"
 

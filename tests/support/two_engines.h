@@ -40,13 +40,12 @@ struct TwoEngines {
 
   std::shared_ptr<RadianceField> field;
   std::shared_ptr<OccupancyGrid> grid;
-  ModelParts parts;
+  // That the engines borrow: where it stays when this moves.
+  std::unique_ptr<ModelParts> parts = std::make_unique<ModelParts>();
   std::unique_ptr<Engine> libtorch, fused;
   TargetBatch batch;
   StepContext context;  // of ExpectTheSame
 
-  TwoEngines(const TwoEngines&) = delete;  // the engines borrow the parts
-  TwoEngines& operator=(const TwoEngines&) = delete;
   TwoEngines() {
     encoding.levels = 5;
     encoding.log2_table_size = 10;
@@ -82,21 +81,21 @@ struct TwoEngines {
     OccupancyOptions occupancy;
     occupancy.resolution = 16;
     grid = std::make_shared<OccupancyGrid>(occupancy, march.StepLength());
-    parts.field = field;
-    parts.grid = grid;
-    parts.proposal = proposal;
-    parts.config.march = march;
-    parts.config.proposal = proposal_options;
-    parts.config.loss = loss;
-    parts.config.gradient_scaling = gradient_scaling;
-    parts.config.effects.robust = robust;
-    parts.config.effects.depth_supervision = depth;
-    parts.config.effects.anti_aliasing = anti_aliasing;
-    parts.background = background;
-    parts.exposure = exposure;
-    parts.pose_refinement = pose_refinement;
-    libtorch = std::make_unique<LibTorchEngine>(parts);
-    fused = std::make_unique<FusedEngine>(parts);
+    parts->field = field;
+    parts->grid = grid;
+    parts->proposal = proposal;
+    parts->config.march = march;
+    parts->config.proposal = proposal_options;
+    parts->config.loss = loss;
+    parts->config.gradient_scaling = gradient_scaling;
+    parts->config.effects.robust = robust;
+    parts->config.effects.depth_supervision = depth;
+    parts->config.effects.anti_aliasing = anti_aliasing;
+    parts->background = background;
+    parts->exposure = exposure;
+    parts->pose_refinement = pose_refinement;
+    libtorch = std::make_unique<LibTorchEngine>(*parts);
+    fused = std::make_unique<FusedEngine>(*parts);
     batch.rays.Resize(rays);
     batch.rgb.resize(3 * rays);
     batch.photograph.resize(rays);
@@ -133,7 +132,7 @@ struct TwoEngines {
   // tolerance: of the gradients, as a part of their largest value. Rounding alone asks for 1e-4;
   // where samples stand a rounding apart, a neuron's sign may differ for one of them.
   void ExpectTheSame(double tolerance = 1e-4) {
-    parts.annealing = context.annealing;
+    parts->annealing = context.annealing;
     const RenderOutput a = libtorch->Render(batch.rays), b = fused->Render(batch.rays);
     ASSERT_EQ(a.rgb.size(), b.rgb.size());
     for (std::size_t i = 0; i < a.rgb.size(); ++i) {

@@ -3,15 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "nerf/config/config.h"
 #include "tests/support/input_error_of.h"
 
 namespace nerf {
 namespace {
 
 TEST(MasksEffect, WithoutAMeaningThatIsKnownIsRefused) {
-  EXPECT_THAT(test::InputErrorOf([] { MaskOptions{"sky"}.Check(); }),
-              testing::AllOf(testing::HasSubstr("effects.masks.meaning"), testing::HasSubstr("sky"),
-                             testing::HasSubstr("ignore or empty")));
+  EXPECT_THAT(
+      test::InputErrorOf([] { LoadConfig("base", {R"(effects.masks={"meaning": "sky"})"}); }),
+      testing::AllOf(testing::HasSubstr("effects.masks.meaning"), testing::HasSubstr("sky"),
+                     testing::HasSubstr("ignore, empty")));
 }
 
 TEST(MasksEffect, MeansNothingToPhotographsWhereItIsOff) {

@@ -1,7 +1,6 @@
-#include "nerf/effects/effects.h"
-
 #include <gtest/gtest.h>
 
+#include "nerf/effects/effects.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {

@@ -176,8 +176,8 @@ TEST(PoseRefinement, OfALensCountForPhotographsThatAreHeldOutToo) {
   const Model& model = trainer.GetModel();
   const auto set_focal = [&](double factor) {
     const torch::NoGradGuard no_grad;
-    model.pose_refinement->named_parameters()["log_focal"].fill_(std::log(factor) /
-                                                       config.effects.pose_refinement->rate);
+    model.pose_refinement->named_parameters()["log_focal"].fill_(
+        std::log(factor) / config.effects.pose_refinement->rate);
   };
   constexpr double kFactor = 1.1;
   std::vector<View> held_out = {capture.data.train.front()};
@@ -219,8 +219,8 @@ TEST(PoseRefinement, AreFoundByTraining) {
   const HeldOutHalves halves(data);
   const test::ScratchFolder run;
   const auto trained = [&](const std::string& poses) {
-    const Config config =
-        LoadConfig("fast", {"march.near_distance=1", "train.steps=500", "effects.pose_refinement=" + poses});
+    const Config config = LoadConfig(
+        "fast", {"march.near_distance=1", "train.steps=500", "effects.pose_refinement=" + poses});
     return std::make_unique<Trainer>(config, FactsOf(data, frame), data, run.path());
   };
   const auto refining = trained("{}"), fixed = trained("null");

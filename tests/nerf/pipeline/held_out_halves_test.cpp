@@ -130,8 +130,8 @@ TEST(HeldOutHalves, AreSeenFromRefinedPoses) {
   for (View& half : halves) {
     std::size_t place = 0;
     while (capture.data.train[place].name != half.name) ++place;
-    half.normalized_from_camera =
-        model.pose_refinement->Refined(static_cast<std::int64_t>(place), half.normalized_from_camera);
+    half.normalized_from_camera = model.pose_refinement->Refined(static_cast<std::int64_t>(place),
+                                                                 half.normalized_from_camera);
     half.name = "unknown " + half.name;
   }
   EXPECT_NEAR(Validation(halves, 1).Psnr(model, false), as_known, 2e-3);

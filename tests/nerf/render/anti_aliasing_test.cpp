@@ -91,7 +91,7 @@ TEST(Footprint, OfPointsChangesNoBit) {
   }
 }
 
-// The dial's renderer, at full quality, sees the patches that the engine sees.
+// The renderer of lower qualities, at full quality, sees the patches that the engine sees.
 TEST(Footprint, IsSeenByPacketsToo) {
   const test::TwoEngines e = WithFootprint(AntiAliasingOptions{4}, true);
   RenderQuality exact = RenderQuality::Of(0.999, e.march, e.proposal_options);
@@ -99,8 +99,7 @@ TEST(Footprint, IsSeenByPacketsToo) {
   exact.samples = e.proposal_options.samples;
   exact.color_share = 0;
   exact.stop_transmittance = e.march.stop_transmittance;
-  PacketRenderer packets(e.field, e.grid, e.proposal, e.march, e.proposal_options, exact,
-                         kernels::Precision::kFloat, e.anti_aliasing);
+  const PacketRenderer packets(*e.parts, exact);
   const RenderOutput a = e.fused->Render(e.batch.rays), b = packets.Render(e.batch.rays);
   const RenderOutput without = WithFootprint({}, true).fused->Render(e.batch.rays);
   double error = 0, change = 0;

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "nerf/image/image_io.h"
+#include "nerf/render/view_renderer.h"
 #include "nerf/scene/pixel_sampler.h"
 #include "nerf/synthetic/sample_folder.h"
 #include "sfm/colmap_model.h"
-#include "nerf/render/view_renderer.h"
 #include "tests/support/analytic_capture.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_training.h"
@@ -75,7 +75,8 @@ TEST(DepthLoss, MeansTheSameInBothEngines) {
 }
 
 TEST(DepthLoss, ChangesNothingAtTheWeightZero) {
-  const test::TwoEngines off = WithDistances({}), zero = WithDistances(DepthSupervisionOptions{0.1, 0, 0.05}),
+  const test::TwoEngines off = WithDistances({}),
+                         zero = WithDistances(DepthSupervisionOptions{0.1, 0, 0.05}),
                          on = WithDistances(DepthSupervisionOptions{0.1, 1, 0.05});
   for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
     const double loss = (off.*engine)->AccumulateGradients(off.batch).loss;
@@ -152,8 +153,8 @@ TEST(SeenPoints, BringMatterToWhereItStandsWherePhotographsAreFew) {
   const FewPhotographs few;
   const SceneFacts scene = FactsOf(few.data, few.normalized_from_world);
   const auto error = [&](const std::string& effect) {
-    const Config config = LoadConfig(
-        "fast", {"march.near_distance=1.1", "train.steps=400", "effects.depth_supervision=" + effect});
+    const Config config = LoadConfig("fast", {"march.near_distance=1.1", "train.steps=400",
+                                              "effects.depth_supervision=" + effect});
     return DistanceError(test::Trained(config, scene, few.data), few);
   };
   const double without = error("null"), with = error("{}");

@@ -58,34 +58,36 @@ std::shared_ptr<PoseRefinement> ThreePoses() {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, EffectOnTheWholePath,
-    testing::Values(Effect{"Poses", [](ModelParts& parts) { parts.pose_refinement = ThreePoses(); }},
-                    Effect{"Bounded", [](ModelParts& parts) { parts.config.march.unbounded = false; }},
-                    Effect{"Footprint",
-                           [](ModelParts& parts) { parts.config.effects.anti_aliasing = AntiAliasingOptions(); }},
-                    Effect{"Diffuse",
-                           [](ModelParts& parts) {
-                             kernels::HashGridOptions encoding;
-                             encoding.levels = 3;
-                             encoding.log2_table_size = 9;
-                             encoding.base_resolution = 4;
-                             encoding.max_resolution = 16;
-                             FieldOptions options;
-                             options.hidden_width = 8;
-                             options.geometry_features = 3;
-                             parts.field = std::make_shared<RadianceField>(
-                                 encoding, options, ColorEncoding::kSrgb, 5, ColorModel::kDiffuse);
-                             parts.field->to(torch::kDouble);
-                           }},
-                    Effect{"Background",
-                           [](ModelParts& parts) {
-                             parts.background = std::make_shared<Background>(BackgroundOptions{4},
-                                                                             ColorEncoding::kSrgb);
-                           }},
-                    Effect{"Exposure",
-                           [](ModelParts& parts) {
-                             parts.exposure = std::make_shared<Exposure>(3, ColorEncoding::kSrgb);
-                           }},
-                    Effect{"Robust", [](ModelParts& parts) { parts.config.effects.robust = RobustOptions(); }}),
+    testing::Values(
+        Effect{"Poses", [](ModelParts& parts) { parts.pose_refinement = ThreePoses(); }},
+        Effect{"Bounded", [](ModelParts& parts) { parts.config.march.unbounded = false; }},
+        Effect{
+            "Footprint",
+            [](ModelParts& parts) { parts.config.effects.anti_aliasing = AntiAliasingOptions(); }},
+        Effect{"Diffuse",
+               [](ModelParts& parts) {
+                 kernels::HashGridOptions encoding;
+                 encoding.levels = 3;
+                 encoding.log2_table_size = 9;
+                 encoding.base_resolution = 4;
+                 encoding.max_resolution = 16;
+                 FieldOptions options;
+                 options.hidden_width = 8;
+                 options.geometry_features = 3;
+                 parts.field = std::make_shared<RadianceField>(
+                     encoding, options, ColorEncoding::kSrgb, 5, ColorModel::kDiffuse);
+                 parts.field->to(torch::kDouble);
+               }},
+        Effect{"Background",
+               [](ModelParts& parts) {
+                 parts.background =
+                     std::make_shared<Background>(BackgroundOptions{4}, ColorEncoding::kSrgb);
+               }},
+        Effect{"Exposure",
+               [](ModelParts& parts) {
+                 parts.exposure = std::make_shared<Exposure>(3, ColorEncoding::kSrgb);
+               }},
+        Effect{"Robust", [](ModelParts& parts) { parts.config.effects.robust = RobustOptions(); }}),
     [](const auto& of) { return of.param.name; });
 
 }  // namespace

@@ -26,10 +26,10 @@ std::string RefusalOf(const std::function<void()>& call) {
   return "no error";
 }
 
-TEST(EngineDoors, RefusePoisonedRaysWithTheirIndex) {
+TEST(EngineContract, RefusePoisonedRaysWithTheirIndex) {
   TwoEngines e;
   e.Make(8);
-  PacketRenderer packets(e.field, e.grid, nullptr, e.march, e.proposal_options, RenderQuality());
+  const PacketRenderer packets(*e.parts, RenderQuality());
   const auto expect_refused = [&](std::vector<float> RayBatch::*values, std::size_t at,
                                   float poison) {
     TargetBatch batch = e.batch;
@@ -53,7 +53,7 @@ TEST(EngineDoors, RefusePoisonedRaysWithTheirIndex) {
   expect_refused(&RayBatch::jitter, 5, -0.5f);
 }
 
-TEST(EngineDoors, RefuseADirectionWithoutLength) {
+TEST(EngineContract, RefuseADirectionWithoutLength) {
   TwoEngines e;
   e.Make(8);
   for (const float length : {0.0f, 1e-40f, 1e-3f}) {
@@ -63,7 +63,7 @@ TEST(EngineDoors, RefuseADirectionWithoutLength) {
   }
 }
 
-TEST(EngineDoors, NameTheRayWhoseTargetIsNoNumber) {
+TEST(EngineContract, NameTheRayWhoseTargetIsNoNumber) {
   TwoEngines e;
   e.Make(8);
   e.batch.rgb[3 * 6 + 1] = NAN;
@@ -77,7 +77,7 @@ TEST(EngineDoors, NameTheRayWhoseTargetIsNoNumber) {
   }
 }
 
-TEST(EngineDoors, ARayMayStandAtTheOriginLookAlongAnAxisAndStartOnTheUnitSphere) {
+TEST(EngineContract, ARayMayStandAtTheOriginLookAlongAnAxisAndStartOnTheUnitSphere) {
   TwoEngines e;
   e.Make(6);
   e.batch.rays.origin = {0, 0, 0, 1, 0, 0, 0, -1, 0, 0, 0, 1, 1e-40f, 0, -0.0f, 100, 0, 0};
@@ -85,7 +85,7 @@ TEST(EngineDoors, ARayMayStandAtTheOriginLookAlongAnAxisAndStartOnTheUnitSphere)
   e.ExpectTheSame();
 }
 
-TEST(EngineDoors, AnImageThatIsRightAlreadyTrainsOnWithoutGradients) {
+TEST(EngineContract, AnImageThatIsRightAlreadyTrainsOnWithoutGradients) {
   TwoEngines e;
   e.Make(20);
   for (Engine* engine : {e.libtorch.get(), e.fused.get()}) {
@@ -99,14 +99,14 @@ TEST(EngineDoors, AnImageThatIsRightAlreadyTrainsOnWithoutGradients) {
   }
 }
 
-TEST(EngineDoors, OneRayIsEnough) {
+TEST(EngineContract, OneRayIsEnough) {
   TwoEngines e;
   e.Make(1);
   e.ExpectTheSame();
 }
 
 // The bound on what another number of threads may change: the order of sums of gradients.
-TEST(EngineDoors, OtherThreadsChangeGradientsByRoundingAlone) {
+TEST(EngineContract, OtherThreadsChangeGradientsByRoundingAlone) {
   TwoEngines e;
   e.Make(97, /*with_proposal=*/true);
   const int threads = NumThreads();

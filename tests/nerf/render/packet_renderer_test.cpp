@@ -13,7 +13,7 @@ namespace {
 using test::TwoEngines;
 
 RenderOutput RenderWith(const TwoEngines& e, const RenderQuality& quality) {
-  return PacketRenderer(e.parts, quality).Render(e.batch.rays);
+  return PacketRenderer(*e.parts, quality).Render(e.batch.rays);
 }
 
 RenderQuality Exact(const TwoEngines& e) {
@@ -188,7 +188,7 @@ TEST(RenderQuality, TheDialGoesFromFastToExact) {
 // Shows each ray's direction as its colour, and keeps the order in which rays came.
 class DirectionRenderer : public RayRenderer {
  public:
-  RenderOutput Render(const RayBatch& rays) override {
+  RenderOutput Render(const RayBatch& rays) const override {
     RenderOutput out;
     out.rgb = rays.direction;
     out.opacity.assign(rays.Size(), 1);
@@ -196,7 +196,7 @@ class DirectionRenderer : public RayRenderer {
     directions.insert(directions.end(), rays.direction.begin(), rays.direction.end());
     return out;
   }
-  std::vector<float> directions;
+  mutable std::vector<float> directions;
 };
 
 TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {

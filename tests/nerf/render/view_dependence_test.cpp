@@ -57,7 +57,8 @@ TEST(ViewDependence, LeftAwayCostsNoWeight) {
     for (const auto& [name, parameter] : NamedParameters(model)) count += parameter.numel();
     return count;
   };
-  EXPECT_EQ(weights("effects.view_dependence={}") - weights("effects.view_dependence=null"), 16 * 64);
+  EXPECT_EQ(weights("effects.view_dependence={}") - weights("effects.view_dependence=null"),
+            16 * 64);
 }
 
 TEST(ViewDependence, LeftAwayMeansTheSameInBothEngines) {

@@ -5,6 +5,7 @@
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/model/run_folder.h"
+#include "nerf/pipeline/evaluation.h"
 #include "nerf/synthetic/sample_folder.h"
 #include "sfm/transforms_json.h"
 #include "tests/support/input_error_of.h"
@@ -64,8 +65,14 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   for (const auto& setting : json["settings"]) {
     EXPECT_GT(setting["steps"], 0);
     EXPECT_EQ(setting["qualities"].size(), 5u);
+    // What the study says of a run is what an evaluation of that run says.
+    const OpenedRun run = OpenRun(out / "runs" / setting["name"].get<std::string>());
     for (const auto& position : setting["qualities"]) {
-      EXPECT_GT(position["psnr"], 3) << setting["name"];
+      const Evaluation evaluation =
+          Evaluate(*run.model, run.posed, ImagesOf(run.posed, Split::kTest),
+                   {position["quality"], false, options.downscale});
+      EXPECT_NEAR(position["psnr"].get<double>(), evaluation.Mean().psnr, 1e-9);
+      EXPECT_NEAR(position["ssim"].get<double>(), evaluation.Mean().ssim, 1e-9);
       EXPECT_GT(position["seconds_per_frame"], 0);
     }
     EXPECT_GT(setting["stage_seconds"]["networks"], 0);
@@ -78,14 +85,16 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   EXPECT_EQ(OpenRun(out / "runs" / "narrow").model->GetModel().config.field.hidden_width, 32);
 
   options.budget = 2;
-  EXPECT_THAT(test::InputErrorOf([&] { Study(scene, options, out, IgnoreEvents); }), HasSubstr("budget_seconds"));
+  EXPECT_THAT(test::InputErrorOf([&] { Study(scene, options, out, IgnoreEvents); }),
+              HasSubstr("budget_seconds"));
 }
 
 TEST(Study, NeedsPhotographsToMeasureOn) {
   const test::ScratchFolder folder;
-  EXPECT_THAT(
-      test::InputErrorOf([&] { Study(SmallSample(folder, 5), StudyOptions{}, folder.path(), IgnoreEvents); }),
-      HasSubstr("held-out"));
+  EXPECT_THAT(test::InputErrorOf([&] {
+                Study(SmallSample(folder, 5), StudyOptions{}, folder.path(), IgnoreEvents);
+              }),
+              HasSubstr("held-out"));
 }
 
 }  // namespace
