@@ -84,18 +84,9 @@ TrainingRequest RequestOf(const TrainArguments& arguments, int threads) {
   return request;
 }
 
-// A table of all keys in Markdown, as docs/configuration.md holds it.
-void PrintConfigHelp() {
-  fmt::print("| key | default | unit | values | meaning |\n|---|---|---|---|---|\n");
-  for (const OptionHelp& option : ConfigHelp()) {
-    fmt::print("| `{}` | {} | {} | {} | {} |\n", option.key, option.value, option.unit,
-               option.range, option.help);
-  }
-}
-
 void RunTrain(const TrainArguments& arguments) {
   if (arguments.help_config) {
-    PrintConfigHelp();
+    fmt::print("{}", ConfigHelpTable());
     return;
   }
   const Stopwatch watch;

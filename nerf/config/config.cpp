@@ -91,6 +91,15 @@ std::vector<OptionHelp> ConfigHelp() {
   return table;
 }
 
+std::string ConfigHelpTable() {
+  std::string table = "| key | default | unit | values | meaning |\n|---|---|---|---|---|\n";
+  for (const OptionHelp& option : ConfigHelp()) {
+    table += fmt::format("| `{}` | {} | {} | {} | {} |\n", option.key, option.value, option.unit,
+                         option.range, option.help);
+  }
+  return table;
+}
+
 Config WithEffect(Config config, const EffectDescriptor& effect, bool on) {
   EffectsOptions::VisitEffects(config.effects, [&](const EffectDescriptor& other, auto& block) {
     if (&other != &effect || block.has_value() == on) return;

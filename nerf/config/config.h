@@ -72,6 +72,8 @@ Config WithEffect(Config config, const EffectDescriptor& effect, bool on);
 
 // Every key with its default, unit, range and help, in the order of declaration.
 std::vector<OptionHelp> ConfigHelp();
+// The same as a table in Markdown, as docs/configuration.md has it.
+std::string ConfigHelpTable();
 
 // A configuration as JSON and back; reading is as strict as LoadConfig.
 //   where  names the file in errors

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <set>
 
+#include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "tests/support/scratch_folder.h"
 
@@ -121,6 +124,61 @@ TEST(Config, FilesBuildOnTheirParents) {
   EXPECT_THAT(ErrorOf(path.string(), {}), HasSubstr("not valid JSON"));
   std::ofstream(path) << R"({"march": {"far_distance": 1e999}})";
   EXPECT_THAT(ErrorOf(path.string(), {}), HasSubstr("out of range"));
+}
+
+TEST(Config, EveryKeyHasHelp) {
+  std::set<std::string> described;
+  for (const OptionHelp& option : ConfigHelp()) {
+    EXPECT_GT(option.help.size(), 5u) << option.key;
+    EXPECT_FALSE(option.range.empty()) << option.key;
+    EXPECT_TRUE(described.insert(option.key).second) << option.key << " is there twice";
+  }
+  // Every key that JSON has, with every effect on, and no other.
+  Config config;
+  for (const EffectDescriptor* effect : AllEffects()) config = WithEffect(config, *effect, true);
+  std::set<std::string> keys;
+  for (const auto& [pointer, value] : JsonFromConfig(config).flatten().items()) {
+    std::string key = pointer.substr(1);
+    std::ranges::replace(key, '/', '.');
+    keys.insert(key);
+  }
+  for (const EffectDescriptor* effect : AllEffects()) {
+    keys.insert(std::string("effects.") + effect->name);
+  }
+  EXPECT_EQ(described, keys);
+}
+
+TEST(Config, TheTableInTheDocumentationIsThatOfTheProgram) {
+  EXPECT_THAT(ReadWholeFile(NERF_DOCUMENTATION "/configuration.md"), HasSubstr(ConfigHelpTable()));
+}
+
+TEST(Config, EffectsMayBeCalledByTheNamesThatTheyHadAVersionAgo) {
+  const Config config = LoadConfig(
+      "base", {"effects.view=null", "effects.poses={\"rate\": 0.5}", "effects.footprint={}"});
+  EXPECT_FALSE(config.effects.view_dependence);
+  ASSERT_TRUE(config.effects.pose_refinement);
+  EXPECT_EQ(config.effects.pose_refinement->rate, 0.5);
+  EXPECT_TRUE(config.effects.anti_aliasing);
+  EXPECT_EQ(NamedEffects("base", {"effects.depth={}"}), (std::set<std::string>{"depth_supervision"}));
+  // As a checkpoint of that version has them.
+  const Config old = ConfigFromJson({{"effects", {{"view", nullptr}, {"depth", {{"share", 0.2}}}}}}, "test");
+  EXPECT_FALSE(old.effects.view_dependence);
+  EXPECT_EQ(old.effects.depth_supervision->share, 0.2);
+}
+
+TEST(Config, AValueThatIsNoEnumeratorListsThoseThereAre) {
+  EXPECT_THAT(ErrorOf("base", {"march.sampler=grid"}),
+              AllOf(HasSubstr("march.sampler"), HasSubstr("grid"), HasSubstr("auto, occupancy, proposal")));
+  EXPECT_THAT(ErrorOf("base", {"train.engine=gpu"}), HasSubstr("fused, libtorch"));
+}
+
+TEST(Config, EveryNumberIsHeldToItsRange) {
+  EXPECT_THAT(ErrorOf("base", {"optimizer.beta1=1"}), HasSubstr("optimizer.beta1 is 1; use 0 to 0.9999"));
+  EXPECT_THAT(ErrorOf("base", {"proposal.encoding.levels=0"}), HasSubstr("proposal.encoding.levels"));
+  EXPECT_THAT(ErrorOf("base", {"effects.robust={\"scale\": 0}"}), HasSubstr("effects.robust.scale"));
+  EXPECT_THAT(ErrorOf("base", {"data.test_every=1"}), HasSubstr("0 or 2 or more"));
+  EXPECT_THAT(ErrorOf("base", {"encoding.base_resolution=4096"}), HasSubstr("max_resolution"));
+  EXPECT_THAT(ErrorOf("base", {"march.near_distance=200"}), HasSubstr("near < far"));
 }
 
 TEST(Config, JsonComesBack) {
