@@ -10,7 +10,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -180,4 +180,4 @@ std::vector<Color> LightVoronoi::Sums(const EnvironmentMap& map, double degrees)
   return sums;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

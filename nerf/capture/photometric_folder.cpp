@@ -11,7 +11,7 @@
 #include "nerf/image/image_io.h"
 #include "nerf/output/color_map.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 constexpr double kCutOff = 0.98;         // share of the albedos that a picture shows unclamped
@@ -61,4 +61,4 @@ void WritePhotometricFolder(const std::filesystem::path& folder, const Photometr
                   Downscale(Scaled(maps.albedo, scale), block));
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

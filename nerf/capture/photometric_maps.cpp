@@ -11,7 +11,7 @@
 #include "nerf/base/parallel.h"
 #include "nerf/base/progress.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -250,4 +250,4 @@ Image NormalsToLookAt(const Image& normal) {
   return picture;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

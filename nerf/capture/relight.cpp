@@ -8,7 +8,7 @@
 #include "nerf/base/progress.h"
 #include "nerf/light/units.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 constexpr double kBright = 0.98;  // share of pixels that stay below kBrightValue
@@ -103,4 +103,4 @@ Image Exposed(Image picture, double stops) {
   return picture;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

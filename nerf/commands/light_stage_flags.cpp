@@ -9,7 +9,7 @@
 namespace nerf {
 
 void AddLightStageFlags(CLI::App& command, LightStageFlags& flags) {
-  appearance::LightStageOptions& options = flags.options;
+  synthetic::LightStageOptions& options = flags.options;
   CLI::Option* stage = command.add_option(
       "--light-stage", options.lights,
       "instead: a subject on a table under so many lights, one at a time, for nerf relight");
@@ -46,10 +46,10 @@ void RunLightStage(const std::filesystem::path& folder, const LightStageFlags& f
   const Stopwatch watch;
   UseThreads(threads);
   const auto& stop = StopOnInterrupt();
-  appearance::LightStageOptions options = flags.options;
+  synthetic::LightStageOptions options = flags.options;
   options.width = width;
   options.height = height;
-  if (!appearance::WriteLightStage(folder, options, [&] { return !stop; })) {
+  if (!synthetic::WriteLightStage(folder, options, [&] { return !stop; })) {
     fmt::print("stopped; {} holds no whole capture\n", folder.string());
     throw CLI::RuntimeError(130);
   }

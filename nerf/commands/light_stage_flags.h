@@ -9,7 +9,7 @@ namespace nerf {
 
 // --light-stage and what goes with it, of `nerf sample`.
 struct LightStageFlags {
-  appearance::LightStageOptions options;
+  synthetic::LightStageOptions options;
   const CLI::Option* light_stage = nullptr;
 
   // Whether a light stage is asked for, if only with a number of lights that is refused later.

@@ -16,12 +16,12 @@ struct SampleArguments {
   LightStageFlags light_stage;
   std::string folder;
   std::string calls_for = "built-in";
-  sample::SampleOptions options;
+  synthetic::SampleOptions options;
 };
 
 void RunSample(const SampleArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
-  sample::WriteSample(folder, arguments.options);
+  synthetic::WriteSample(folder, arguments.options);
   fmt::print(
       "{} photographs are in {}; true poses, depth, normals and albedo, for tests only, in {}\n"
       "next: nerf train {}\n",
@@ -33,7 +33,7 @@ void RunSample(const SampleArguments& arguments) {
 
 void AddSampleCommand(CLI::App& app) {
   auto arguments = std::make_shared<SampleArguments>();
-  sample::SampleOptions& options = arguments->options;
+  synthetic::SampleOptions& options = arguments->options;
   CLI::App* command =
       app.add_subcommand("sample", "Photographs of a small built-in scene, to train on");
   command
@@ -41,7 +41,7 @@ void AddSampleCommand(CLI::App& app) {
       ->required();
   command
       ->add_option("--calls-for", arguments->calls_for,
-                   "a capture that calls for one effect: " + sample::OccasionNames())
+                   "a capture that calls for one effect: " + synthetic::OccasionNames())
       ->capture_default_str();
   const CLI::Option* const views = command->add_option(
       "--views", options.views, "how many photographs [36; few where they call for depth]");
@@ -65,9 +65,9 @@ void AddSampleCommand(CLI::App& app) {
       "  nerf sample loose --calls-for poses       poses a little wrong; the true ones beside\n"
       "  nerf train demo                           then train on them");
   command->callback([arguments, views] {
-    const sample::Occasion occasion = sample::OccasionFromName(arguments->calls_for);
+    const synthetic::Occasion occasion = synthetic::OccasionFromName(arguments->calls_for);
     arguments->options.occasion = occasion;
-    if (views->count() == 0) arguments->options.views = sample::UsualViews(occasion);
+    if (views->count() == 0) arguments->options.views = synthetic::UsualViews(occasion);
     if (arguments->light_stage.Given()) {
       RunLightStage(arguments->folder, arguments->light_stage, arguments->options.width,
                     arguments->options.height, arguments->options.threads);

@@ -12,7 +12,7 @@
 #include "nerf/base/atomic_file.h"
 #include "nerf/image/srgb.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the header says little endian");
@@ -67,4 +67,4 @@ void WriteHeightMesh(const std::filesystem::path& file, const Image& height, con
   WriteFileAtomically(file, header + vertices + faces);
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -4,7 +4,7 @@
 
 #include "nerf/image/image.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Writes a height field as a mesh in PLY's binary format (Turk 1994), which MeshLab, Blender and
 // the like read: a vertex for each pixel that has a height, two triangles between four of them.
@@ -14,4 +14,4 @@ namespace nerf::appearance {
 // The file appears whole or not at all. Throws InputError naming it.
 void WriteHeightMesh(const std::filesystem::path& file, const Image& height, const Image& color);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

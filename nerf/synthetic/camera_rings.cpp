@@ -7,10 +7,11 @@
 #include <numbers>
 #include <vector>
 
+#include "nerf/output/camera_path.h"
 #include "nerf/scene/camera.h"
 #include "nerf/synthetic/hash.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -59,19 +60,6 @@ std::vector<int> ViewsOnRings(int views, const std::vector<double>& elevations) 
   return counts;
 }
 
-// OpenCV axes: z looks at the target, x to the right, y down.
-//   roll  radians about the viewing direction
-Eigen::Isometry3d LookAt(const Vector3d& position, const Vector3d& target, double roll) {
-  const Vector3d forward = (target - position).normalized();
-  const Vector3d right = forward.cross(Vector3d::UnitZ()).normalized();
-  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
-  world_from_camera.linear().col(0) = right;
-  world_from_camera.linear().col(1) = forward.cross(right);
-  world_from_camera.linear().col(2) = forward;
-  world_from_camera.translation() = position;
-  return world_from_camera * Eigen::AngleAxisd(roll, Vector3d::UnitZ());
-}
-
 }  // namespace
 
 PosedImages CameraRings(const SampleOptions& options) {
@@ -96,11 +84,12 @@ PosedImages CameraRings(const SampleOptions& options) {
       PosedImage image;
       image.name =
           fmt::format("view_{:03}.{}", view, options.occasion == Occasion::kHdr ? "exr" : "png");
-      image.world_from_camera = LookAt(position, target, 3 * kDegree * irregular.Next());
+      const Eigen::AngleAxisd roll(3 * kDegree * irregular.Next(), Vector3d::UnitZ());
+      image.world_from_camera = LookAt(position, target, Vector3d::UnitZ()) * roll;
       posed.images.push_back(image);
     }
   }
   return posed;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

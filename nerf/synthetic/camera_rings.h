@@ -3,7 +3,7 @@
 #include "nerf/scene/posed_images.h"
 #include "nerf/synthetic/sample_options.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // The cameras of a capture, as a person walks round a subject: rings of views about 3 units from
 // the origin at different heights, all looking near the origin, none quite regular. Views are
@@ -14,4 +14,4 @@ namespace nerf::sample {
 // The same options give the same cameras on every machine. Throws InputError (Check()).
 PosedImages CameraRings(const SampleOptions& options);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

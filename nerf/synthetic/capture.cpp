@@ -13,7 +13,7 @@
 #include "nerf/synthetic/hash.h"
 #include "nerf/synthetic/ray_tracer.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector2d;
@@ -40,7 +40,8 @@ Vector2d SpreadPoint(int i, const Vector2d& shift) {
   return {x - std::floor(x), y - std::floor(y)};
 }
 
-void Store(const Vector3d& value, float* pixel) {
+template <class Triple>
+void Store(const Triple& value, float* pixel) {
   for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(value[c]);
 }
 
@@ -165,4 +166,4 @@ Capture MakeCapture(const SampleOptions& options) {
   return capture;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

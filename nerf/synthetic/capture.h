@@ -11,7 +11,7 @@
 #include "nerf/synthetic/sample_options.h"
 #include "nerf/synthetic/scene.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // One rendered photograph, and what is true of the ray through each pixel's centre.
 struct View {
@@ -47,4 +47,4 @@ void RenderViews(const Scene& scene, const PosedImages& posed, const SampleOptio
 // The same options give the same pixels, whatever the number of threads. Throws InputError.
 Capture MakeCapture(const SampleOptions& options);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // Scrambles the bits of a word, so that neighbouring inputs give unrelated outputs.
 // Source: Wellons 2018, "Prospecting for Hash Functions" (lowbias32).
@@ -25,4 +25,4 @@ constexpr std::uint32_t Hash(int x, int y, int z, std::uint32_t seed) {
 // A hash as a number in [0, 1).
 constexpr double UnitFromHash(std::uint32_t hash) { return hash * 0x1p-32; }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -18,8 +18,9 @@
 #include "nerf/material/merl.h"
 #include "nerf/output/camera_path.h"
 #include "nerf/scene/camera.h"
+#include "nerf/synthetic/check_range.h"
 
-namespace nerf::appearance {
+namespace nerf::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,12 +37,12 @@ constexpr const char* kMarkText =
     "A capture of nerf sample --light-stage: the next one here replaces its images and lights.\n";
 
 Surface Ball(double x, std::shared_ptr<const Brdf> brdf) {
-  return {sample::Sphere{{x, kRadius, 0}, kRadius}, std::move(brdf)};
+  return {Sphere{{x, kRadius, 0}, kRadius}, std::move(brdf)};
 }
 
 Surface MarbleBall(double x) {
-  const sample::Sphere sphere{{x, kRadius, 0}, kRadius};
-  const Medium marble = InUnits(Marble(), 2 * kRadius / kMillimetersAcross);
+  const Sphere sphere{{x, kRadius, 0}, kRadius};
+  const Medium marble = InUnits(MarbleMedium(), 2 * kRadius / kMillimetersAcross);
   Surface ball{sphere, nullptr};
   ball.subsurface = std::make_shared<SubsurfaceSphere>(sphere, marble);
   return ball;
@@ -52,7 +53,7 @@ std::string ImageName(int light) { return fmt::format("light_{:04d}.exr", light)
 // A folder that holds files of somebody's must not be mixed with ours: ours are those beside the
 // mark that WriteLightStage leaves before anything else, so that a capture that was stopped is
 // known as well.
-void RefuseForeignContent(const fs::path& folder) {
+void RefuseUnlessLightStage(const fs::path& folder) {
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) {
     throw InputError("{} is a file: choose an empty or a new folder", folder.string());
@@ -67,11 +68,6 @@ void RefuseForeignContent(const fs::path& folder) {
     throw InputError("{} is no part of a light-stage capture: choose an empty or a new folder",
                      file.string());
   }
-}
-
-void CheckRange(const char* flag, int value, int lowest, int highest) {
-  if (value >= lowest && value <= highest) return;
-  throw InputError("{} is {}: choose a number from {} to {}", flag, value, lowest, highest);
 }
 
 }  // namespace
@@ -89,12 +85,12 @@ SurfaceScene LightStageSubject(std::shared_ptr<const Brdf> in_place_of_gold) {
     in_place_of_gold = std::make_shared<Conductor>(Color(1.00, 0.77, 0.34), 0.25);
   }
   SurfaceScene scene;
-  scene.surfaces = {{sample::Box{{0, -0.05, 0}, {1.9, 0.05, 0.9}},
-                     std::make_shared<Lambert>(Color(0.42, 0.36, 0.30))},
-                    Ball(-1.12, std::make_shared<Lambert>(Color(0.30, 0.52, 0.42))),
-                    Ball(-0.37, std::make_shared<CoatedDiffuse>(Color(0.55, 0.06, 0.05), 1.5, 0.2)),
-                    Ball(0.37, std::move(in_place_of_gold)),
-                    MarbleBall(1.12)};
+  scene.surfaces = {
+      {Box{{0, -0.05, 0}, {1.9, 0.05, 0.9}}, std::make_shared<Lambert>(Color(0.42, 0.36, 0.30))},
+      Ball(-1.12, std::make_shared<Lambert>(Color(0.30, 0.52, 0.42))),
+      Ball(-0.37, std::make_shared<CoatedDiffuse>(Color(0.55, 0.06, 0.05), 1.5, 0.2)),
+      Ball(0.37, std::move(in_place_of_gold)),
+      MarbleBall(1.12)};
   return scene;
 }
 
@@ -149,7 +145,7 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   }
   std::shared_ptr<const Brdf> measured;
   if (!options.merl.empty()) measured = std::make_shared<MerlBrdf>(MerlBrdf::Read(options.merl));
-  RefuseForeignContent(folder);
+  RefuseUnlessLightStage(folder);
   MakeOutputFolder(folder);
   WriteFileAtomically(folder / kMark, kMarkText);
   RemoveAll(folder / "lights.txt");
@@ -176,4 +172,4 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   return true;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf::synthetic

@@ -8,7 +8,7 @@
 
 #include "nerf/transport/scene_renderer.h"
 
-namespace nerf::appearance {
+namespace nerf::synthetic {
 
 // How a built-in subject is photographed in a light stage.
 struct LightStageOptions {
@@ -67,4 +67,4 @@ SceneRendering PhotographUnder(
 bool WriteLightStage(const std::filesystem::path& folder, const LightStageOptions& options,
                      const std::function<bool()>& keep_on);
 
-}  // namespace nerf::appearance
+}  // namespace nerf::synthetic

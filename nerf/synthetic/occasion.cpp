@@ -7,7 +7,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/synthetic/hash.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -152,4 +152,4 @@ Photography PhotographyOf(Occasion occasion, int view, unsigned seed,
   return photography;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

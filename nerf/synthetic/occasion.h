@@ -6,7 +6,7 @@
 #include "nerf/scene/posed_images.h"
 #include "nerf/synthetic/scene.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // What a sample calls for, one effect each, so that a program which finds out can be told right
 // from wrong.
@@ -56,4 +56,4 @@ struct Photography {
 Photography PhotographyOf(Occasion occasion, int view, unsigned seed,
                           const Eigen::Isometry3d& world_from_camera);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -5,7 +5,9 @@
 #include <limits>
 #include <numbers>
 
-namespace nerf::sample {
+#include "nerf/material/microfacet.h"
+
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -13,11 +15,6 @@ using Eigen::Vector3d;
 // Rays that leave a surface start this far along their way, so that rounding does not make them
 // meet the surface they left; scene units.
 constexpr double kSkip = 1e-6;
-
-Color SchlickFresnel(const Color& at_normal, double cosine) {
-  const double m = 1 - std::clamp(cosine, 0.0, 1.0);
-  return at_normal + (Color::Ones() - at_normal) * (m * m * m * m * m);
-}
 
 Vector3d Mirrored(const Vector3d& direction, const Vector3d& normal) {
   return direction - 2 * direction.dot(normal) * normal;
@@ -100,16 +97,15 @@ Color Radiance(const Scene& scene, const Ray& ray, int bounces) {
     light += scene.sun.irradiance * normal.dot(scene.sun.direction_to_sun) / std::numbers::pi;
   }
   const Color& gloss = hit->material->gloss;
-  Color base = hit->albedo.cwiseProduct(light);
+  Color base = hit->albedo * light;
   if (!gloss.isZero(0)) {
-    base = (Color::Ones() - gloss).cwiseProduct(base) +
-           gloss.cwiseProduct(Highlight(scene, ray, *hit, in_sun));
+    base = (1 - gloss) * base + gloss * Highlight(scene, ray, *hit, in_sun);
   }
   if (hit->material->mirror.isZero(0)) return base;
 
   const Color F = SchlickFresnel(hit->material->mirror, -normal.dot(ray.direction_in_world));
   const Color coat = CoatRadiance(scene, ray, *hit, in_sun, bounces);
-  return (Color::Ones() - F).cwiseProduct(base) + F.cwiseProduct(coat);
+  return (1 - F) * base + F * coat;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -4,7 +4,7 @@
 
 #include "nerf/synthetic/scene.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // What a ray meets first.
 struct Hit {
@@ -32,4 +32,4 @@ bool SunReaches(const Scene& scene, const Eigen::Vector3d& x_in_world,
 //   bounces  how many mirrors a path may meet; beyond them a coat reflects nothing
 Color Radiance(const Scene& scene, const Ray& ray, int bounces);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -16,7 +16,7 @@
 #include "sfm/colmap_text_writer.h"
 #include "sfm/transforms_json.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,7 +48,7 @@ std::vector<fs::path> FilesIn(const fs::path& folder) {
 }
 
 // A folder that holds photographs of somebody's must not be mixed with ours.
-void RefuseForeignContent(const fs::path& folder) {
+void RefuseUnlessSample(const fs::path& folder) {
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) {
     throw InputError("{} is a file: choose an empty or a new folder", folder.string());
@@ -99,7 +99,7 @@ void WriteSample(const fs::path& folder, const SampleOptions& options) {
   PosedImages posed = CameraRings(options);
   for (auto& image : posed.images) image.path = folder / "images" / image.name;
   try {
-    RefuseForeignContent(folder);
+    RefuseUnlessSample(folder);
     // `truth` comes first: it is the mark by which a folder is known as a sample.
     fs::create_directories(folder / "truth" / "sparse");
     fs::create_directories(folder / "images");
@@ -127,4 +127,4 @@ void WriteSample(const fs::path& folder, const SampleOptions& options) {
   });
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

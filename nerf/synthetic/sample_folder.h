@@ -4,7 +4,7 @@
 
 #include "nerf/synthetic/sample_options.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // Photographs the scene of options.occasion into a folder, which is made where it does not exist:
 //   images/view_000.png, ...        photographs, 8-bit sRGB (or .exr, radiance), all that structure
@@ -22,4 +22,4 @@ namespace nerf::sample {
 // holds something that is not a sample (nothing in it is touched then).
 void WriteSample(const std::filesystem::path& folder, const SampleOptions& options);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -2,7 +2,7 @@
 
 #include "nerf/synthetic/occasion.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // How the sample is photographed.
 struct SampleOptions {
@@ -18,4 +18,4 @@ struct SampleOptions {
   void Check() const;
 };
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

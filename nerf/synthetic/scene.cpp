@@ -1,6 +1,6 @@
 #include "nerf/synthetic/scene.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -107,4 +107,4 @@ Scene BuiltInScene() {
   return scene;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -7,7 +7,7 @@
 #include "nerf/geometry/shapes.h"
 #include "nerf/synthetic/texture.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // What a surface does with light: a diffuse (Lambert) base under a coat that reflects.
 struct Material {
@@ -56,4 +56,4 @@ struct Scene {
 // sun under a cloudy sky.
 Scene BuiltInScene();
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

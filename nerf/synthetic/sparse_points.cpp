@@ -6,7 +6,7 @@
 #include "nerf/scene/camera.h"
 #include "nerf/synthetic/ray_tracer.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector2d;
@@ -82,4 +82,4 @@ std::vector<SparsePoint> SparsePoints(const Scene& scene, const PosedImages& pos
   return points;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

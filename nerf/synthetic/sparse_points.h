@@ -6,7 +6,7 @@
 #include "nerf/synthetic/sample_options.h"
 #include "nerf/synthetic/scene.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // What structure from motion would find in a sample's photographs, without finding it: points on
 // surfaces, each with the photographs that see it, and pixels that are a third of a pixel wrong. No
@@ -14,4 +14,4 @@ namespace nerf::sample {
 std::vector<SparsePoint> SparsePoints(const Scene& scene, const PosedImages& posed,
                                       const SampleOptions& options);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

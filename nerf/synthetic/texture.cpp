@@ -6,7 +6,7 @@
 #include "nerf/image/srgb.h"
 #include "nerf/synthetic/hash.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -24,9 +24,7 @@ Vector3i Floor(const Vector3d& x) {
 }
 
 // Scales a colour and keeps it a reflectance.
-Color Shade(const Color& color, double factor) {
-  return (color * factor).cwiseMax(0.0).cwiseMin(1.0);
-}
+Color Shade(const Color& color, double factor) { return (color * factor).max(0.0).min(1.0); }
 
 // The edge directions of a cube; four of the twelve stand twice, so that four bits choose one.
 constexpr double kEdges[16][3] = {
@@ -150,4 +148,4 @@ double FractalNoise(const Vector3d& x, int octaves, std::uint32_t seed) {
   return sum / std::sqrt(power) * 1.9;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -5,10 +5,9 @@
 #include <cstdint>
 #include <variant>
 
-namespace nerf::sample {
+#include "nerf/image/color.h"
 
-// Reflectance or radiance, linear RGB with the primaries of sRGB.
-using Color = Eigen::Vector3d;
+namespace nerf::synthetic {
 
 // The linear colour of an sRGB value as people write it, e.g. 0xd9a441.
 Color ColorFromSrgbHex(std::uint32_t rgb);
@@ -70,4 +69,4 @@ double GradientNoise(const Eigen::Vector3d& x, std::uint32_t seed);
 // one before; scaled so that most values lie in [-1, 1].
 double FractalNoise(const Eigen::Vector3d& x, int octaves, std::uint32_t seed);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

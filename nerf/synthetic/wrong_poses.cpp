@@ -9,7 +9,7 @@
 #include "nerf/synthetic/hash.h"
 #include "nerf/synthetic/occasion.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Matrix3d;
@@ -99,4 +99,4 @@ PosedImages WithWrongPoses(const PosedImages& posed, unsigned seed) {
   return moved;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -2,7 +2,7 @@
 
 #include "nerf/scene/posed_images.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
 // A capture with poses as they come from somebody who is a little wrong: each camera turned about
 // its own centre by 0.4 degrees and moved by 0.012 scene units, standard deviations along each
@@ -13,4 +13,4 @@ namespace nerf::sample {
 //   returns  the same with wrong poses, and with the reprojection errors that these give
 PosedImages WithWrongPoses(const PosedImages& posed, unsigned seed);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -6,10 +6,9 @@
 #include "nerf/base/input_error.h"
 #include "nerf/geometry/directions.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 using Eigen::Vector3d;
-using sample::Ray;
 
 namespace {
 
@@ -167,4 +166,4 @@ Color PathTracer::Radiance(Ray ray, UniformStream& random, std::int64_t& rays) c
   }
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -10,7 +10,7 @@
 #include "nerf/base/progress.h"
 #include "nerf/scene/camera.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector2d;
@@ -23,8 +23,8 @@ Vector2d PlaceInPixel(int i) {
   return {x - std::floor(x), y - std::floor(y)};
 }
 
-sample::Ray RayThrough(const Camera& camera, const Eigen::Isometry3d& world_from_camera,
-                       const Vector2d& pixel) {
+Ray RayThrough(const Camera& camera, const Eigen::Isometry3d& world_from_camera,
+               const Vector2d& pixel) {
   const auto direction_in_camera = DirectionFromPixel(camera, pixel);
   if (!direction_in_camera) {
     throw InputError("the camera has no ray for pixel ({}, {}): choose another lens", pixel.x(),
@@ -149,4 +149,4 @@ SceneRendering RenderScene(const SurfaceScene& scene, const TransportTerms& term
   return result;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

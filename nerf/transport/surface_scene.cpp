@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 // Rays that leave a surface start this far along their way, so that rounding does not make them
@@ -12,11 +12,11 @@ constexpr double kSkip = 1e-6;
 
 }  // namespace
 
-std::optional<SurfaceHit> FirstHit(const SurfaceScene& scene, const sample::Ray& ray) {
-  sample::Intersection nearest{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero()};
+std::optional<SurfaceHit> FirstHit(const SurfaceScene& scene, const Ray& ray) {
+  Intersection nearest{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero()};
   const Surface* met = nullptr;
   for (const Surface& surface : scene.surfaces) {
-    const auto crossing = sample::Intersect(surface.shape, ray, kSkip);
+    const auto crossing = Intersect(surface.shape, ray, kSkip);
     if (crossing && crossing->distance < nearest.distance) nearest = *crossing, met = &surface;
   }
   if (met == nullptr) return std::nullopt;
@@ -26,11 +26,11 @@ std::optional<SurfaceHit> FirstHit(const SurfaceScene& scene, const sample::Ray&
   return SurfaceHit{ray.origin_in_world + nearest.distance * ray.direction_in_world, normal, met};
 }
 
-bool IsBlocked(const SurfaceScene& scene, const sample::Ray& ray, double distance) {
+bool IsBlocked(const SurfaceScene& scene, const Ray& ray, double distance) {
   return std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {
-    const auto crossing = sample::Intersect(surface.shape, ray, kSkip);
+    const auto crossing = Intersect(surface.shape, ray, kSkip);
     return crossing && crossing->distance < distance - kSkip;
   });
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

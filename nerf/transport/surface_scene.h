@@ -10,11 +10,11 @@
 #include "nerf/material/brdf.h"
 #include "nerf/transport/subsurface.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // A surface and what it does with light. Boxes and discs have two sides that are alike.
 struct Surface {
-  sample::Shape shape;
+  Shape shape;
   std::shared_ptr<const Brdf> brdf = nullptr;  // none: reflects nothing
   Color emission = Color::Zero();              // radiance, to all sides
   // Light that enters a translucent sphere, the same as `shape`, and leaves it elsewhere; none:
@@ -38,9 +38,9 @@ struct SurfaceHit {
 };
 
 // The first surface along a ray; nullopt where there is none.
-std::optional<SurfaceHit> FirstHit(const SurfaceScene& scene, const sample::Ray& ray);
+std::optional<SurfaceHit> FirstHit(const SurfaceScene& scene, const Ray& ray);
 
 // Whether any surface stands within a distance along a ray.
-bool IsBlocked(const SurfaceScene& scene, const sample::Ray& ray, double distance);
+bool IsBlocked(const SurfaceScene& scene, const Ray& ray, double distance);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

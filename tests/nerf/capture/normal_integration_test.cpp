@@ -11,7 +11,7 @@
 #include "nerf/geometry/height_mesh.h"
 #include "tests/support/scratch_folder.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 void Store(Image& normal, int x, int y, double nx, double ny, double nz) {
@@ -102,4 +102,4 @@ TEST(HeightMesh, HasAVertexAPixelAndTwoTrianglesASquareThatFaceTheCamera) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -19,12 +19,12 @@
 namespace nerf {
 namespace {
 
-using sample::Occasion;
+using synthetic::Occasion;
 
-sample::SampleOptions Small(Occasion occasion) {
-  sample::SampleOptions options;
+synthetic::SampleOptions Small(Occasion occasion) {
+  synthetic::SampleOptions options;
   options.occasion = occasion;
-  options.views = sample::UsualViews(occasion);
+  options.views = synthetic::UsualViews(occasion);
   options.width = 240;
   options.height = 180;
   options.samples_per_pixel = 4;
@@ -42,7 +42,7 @@ class EachOccasion : public testing::TestWithParam<Case> {};
 // Of the effects that Inspect judges, those that a sample calls for and no other.
 TEST_P(EachOccasion, IsJudgedRightly) {
   const test::ScratchFolder folder;
-  sample::WriteSample(folder.path(), Small(GetParam().occasion));
+  synthetic::WriteSample(folder.path(), Small(GetParam().occasion));
   PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   sfm::FindMasks(posed);
@@ -78,8 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
   const test::ScratchFolder folder;
-  const sample::SampleOptions options = Small(Occasion::kExposure);
-  sample::WriteSample(folder.path(), options);
+  const synthetic::SampleOptions options = Small(Occasion::kExposure);
+  synthetic::WriteSample(folder.path(), options);
   const PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   const Inspection inspection = Inspect(posed);
@@ -87,9 +87,9 @@ TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
   std::vector<double> truth;
   double mean = 0;
   for (int i = 0; i < static_cast<int>(posed.images.size()); ++i) {
-    const auto gain =
-        sample::PhotographyOf(options.occasion, i, options.seed, posed.images[i].world_from_camera)
-            .gain;
+    const auto gain = synthetic::PhotographyOf(options.occasion, i, options.seed,
+                                               posed.images[i].world_from_camera)
+                          .gain;
     truth.push_back(gain.array().log().mean() / std::log(2.0));
     mean += truth.back() / static_cast<double>(posed.images.size());
   }
@@ -100,7 +100,7 @@ TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
 
 TEST(Inspect, RaysBeginBeforeWhateverACameraSees) {
   const test::ScratchFolder folder;
-  sample::WriteSample(folder.path(), Small(Occasion::kNothing));
+  synthetic::WriteSample(folder.path(), Small(Occasion::kNothing));
   const PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   double nearest = 1e9;
@@ -123,7 +123,7 @@ TEST(Inspect, RaysBeginBeforeWhateverACameraSees) {
 
 TEST(Inspect, WithoutALearnedBackgroundContractedSpaceHoldsWhatIsFar) {
   const test::ScratchFolder folder;
-  sample::WriteSample(folder.path(), Small(Occasion::kBackground));
+  synthetic::WriteSample(folder.path(), Small(Occasion::kBackground));
   const PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   for (const bool learned : {true, false}) {
@@ -138,7 +138,7 @@ TEST(Inspect, WithoutALearnedBackgroundContractedSpaceHoldsWhatIsFar) {
 
 TEST(Inspect, WithoutSparsePointsOnlyFactsAreDecided) {
   const test::ScratchFolder folder;
-  sample::WriteSample(folder.path(), Small(Occasion::kAlpha));
+  synthetic::WriteSample(folder.path(), Small(Occasion::kAlpha));
   const Inspection inspection =
       Inspect(sfm::ReadTransformsJson(folder.path() / "truth" / "transforms.json"));
   std::map<std::string, bool> decided;

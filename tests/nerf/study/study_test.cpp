@@ -19,12 +19,12 @@ using testing::HasSubstr;
 using test::never_stop;
 
 PosedImages SmallSample(const test::ScratchFolder& folder, int views) {
-  sample::SampleOptions options;
+  synthetic::SampleOptions options;
   options.views = views;
   options.width = 32;
   options.height = 24;
   options.samples_per_pixel = 1;
-  sample::WriteSample(folder.path() / "sample", options);
+  synthetic::WriteSample(folder.path() / "sample", options);
   return sfm::ReadTransformsJson(folder.path() / "sample/truth/transforms.json");
 }
 

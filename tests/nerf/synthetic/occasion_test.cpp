@@ -18,7 +18,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 SampleOptions Tiny(Occasion occasion) {
@@ -265,4 +265,4 @@ TEST(WriteSample, WithWrongPosesKeepsTheTrueOnesApart) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -10,7 +10,7 @@
 #include "nerf/synthetic/occasion.h"
 #include "nerf/synthetic/sparse_points.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -102,4 +102,4 @@ TEST_F(WrongPoses, ShowInTheReprojectionErrorsAndLeavePointsWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic
