@@ -12,6 +12,7 @@
 #include "nerf/synthetic/camera_rings.h"
 #include "nerf/synthetic/hash.h"
 #include "nerf/synthetic/ray_tracer.h"
+#include "nerf/transport/pixel_rays.h"
 
 namespace nerf::synthetic {
 namespace {
@@ -20,25 +21,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kBounces = 2;
-
-Ray RayThrough(const Camera& camera, const Eigen::Isometry3d& world_from_camera,
-               const Vector2d& pixel) {
-  const auto direction_in_camera = DirectionFromPixel(camera, pixel);
-  if (!direction_in_camera) {
-    throw InputError("the camera has no ray for pixel ({}, {}): choose another lens", pixel.x(),
-                     pixel.y());
-  }
-  return {world_from_camera.translation(), world_from_camera.linear() * *direction_in_camera};
-}
-
-// The i-th of the points that fill the unit square evenly, whatever their number.
-// Source: Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences" (R2), shifted as
-// by Cranley and Patterson 1976.
-Vector2d SpreadPoint(int i, const Vector2d& shift) {
-  const double x = shift.x() + 0.7548776662466927 * i;
-  const double y = shift.y() + 0.5698402909980532 * i;
-  return {x - std::floor(x), y - std::floor(y)};
-}
 
 template <class Triple>
 void Store(const Triple& value, float* pixel) {
@@ -51,8 +33,8 @@ Color PixelRadiance(const Scene& scene, const Camera& camera,
   const Vector2d shift(UnitFromHash(Hash(x, y, 0, seed)), UnitFromHash(Hash(x, y, 1, seed)));
   Color sum = Color::Zero();
   for (int i = 0; i < samples_per_pixel; ++i) {
-    const Vector2d pixel = Vector2d(x, y) + SpreadPoint(i, shift);
-    sum += Radiance(scene, RayThrough(camera, world_from_camera, pixel), kBounces);
+    const Vector2d pixel = Vector2d(x, y) + PointInPixel(i, shift);
+    sum += Radiance(scene, RayThroughPixel(camera, world_from_camera, pixel), kBounces);
   }
   return sum / samples_per_pixel;
 }
@@ -73,8 +55,8 @@ double Coverage(const Scene& scene, const Camera& camera,
   const Vector2d shift(UnitFromHash(Hash(x, y, 0, seed)), UnitFromHash(Hash(x, y, 1, seed)));
   int met = 0;
   for (int i = 0; i < samples_per_pixel; ++i) {
-    const Vector2d pixel = Vector2d(x, y) + SpreadPoint(i, shift);
-    if (Trace(scene, RayThrough(camera, world_from_camera, pixel))) ++met;
+    const Vector2d pixel = Vector2d(x, y) + PointInPixel(i, shift);
+    if (Trace(scene, RayThroughPixel(camera, world_from_camera, pixel))) ++met;
   }
   return static_cast<double>(met) / samples_per_pixel;
 }
@@ -86,13 +68,11 @@ bool Passes(const std::vector<Object>& passers_by, const Scene& scene, const Cam
     for (const double dx : {-0.5, 0.5, 1.5}) {
       const Vector2d pixel(std::clamp(x + dx, 0.0, static_cast<double>(camera.width)),
                            std::clamp(y + dy, 0.0, static_cast<double>(camera.height)));
-      const Ray ray = RayThrough(camera, world_from_camera, pixel);
-      for (const Object& passer_by : passers_by) {
-        const auto crossing = Intersect(passer_by.shape, ray);
-        if (!crossing) continue;
-        const auto hit = Trace(scene, ray);
-        if (!hit || crossing->distance < hit->distance) return true;
-      }
+      const Ray ray = RayThroughPixel(camera, world_from_camera, pixel);
+      const auto passer_by = FirstHit(passers_by, ray);
+      if (!passer_by) continue;
+      const auto behind = Trace(scene, ray);
+      if (!behind || passer_by->distance < behind->distance) return true;
     }
   }
   return false;
@@ -130,7 +110,7 @@ View RenderView(const Scene& scene, const Camera& camera,
         *view.mask->At(x, y) = passes ? 0.0f : 1.0f;
       }
       const Vector2d center(x + 0.5, y + 0.5);
-      const auto hit = Trace(scene, RayThrough(camera, world_from_camera, center));
+      const auto hit = Trace(scene, RayThroughPixel(camera, world_from_camera, center));
       if (!hit) continue;
       *view.depth.At(x, y) = static_cast<float>(hit->distance);
       Store(hit->normal_in_world, view.normal.At(x, y));

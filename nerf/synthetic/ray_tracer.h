@@ -7,7 +7,7 @@
 namespace nerf::synthetic {
 
 // What a ray meets first.
-struct Hit {
+struct SceneHit {
   double distance = 0;  // along the ray, scene units
   Eigen::Vector3d x_in_world;
   Eigen::Vector3d normal_in_world;     // unit, on the side the ray comes from
@@ -17,7 +17,7 @@ struct Hit {
 
 // First surface along a ray, the dome included.
 //   returns  nullopt where there is none, which under a dome happens only to rays from outside it
-std::optional<Hit> Trace(const Scene& scene, const Ray& ray);
+std::optional<SceneHit> Trace(const Scene& scene, const Ray& ray);
 
 // Whether the sun reaches a point on a surface with this normal: nothing stands between, and the
 // surface does not face away.

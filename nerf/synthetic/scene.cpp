@@ -100,7 +100,7 @@ Scene BuiltInScene() {
       Standing(0.08, -0.85, 0.17, VioletBall()),
       Standing(0.38, -0.25, 0.36, Gold()),
   };
-  scene.sun = {.direction_to_sun = Vector3d(0.55, -0.45, 0.85).normalized(),
+  scene.sun = {.to_light = Vector3d(0.55, -0.45, 0.85).normalized(),
                .irradiance = Color(2.15, 2.0, 1.75)};
   scene.ambient = {.above = Color(0.31, 0.34, 0.39), .below = Color(0.20, 0.19, 0.17)};
   scene.dome = Dome{8, CloudySky()};

@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "nerf/geometry/shapes.h"
+#include "nerf/geometry/shape_list.h"
+#include "nerf/light/lights.h"
 #include "nerf/synthetic/texture.h"
 
 namespace nerf::synthetic {
@@ -21,12 +22,6 @@ struct Material {
 struct Object {
   Shape shape;
   Material material;
-};
-
-// Light from infinitely far away: parallel rays, hard shadows.
-struct Sun {
-  Eigen::Vector3d direction_to_sun = Eigen::Vector3d::UnitZ();  // unit
-  Color irradiance = Color::Zero();                             // on a surface that faces the sun
 };
 
 // Light that reaches a surface wherever it is: `above` where it faces up, `below` where it faces
@@ -46,7 +41,7 @@ struct Dome {
 // World: z up, units about metres.
 struct Scene {
   std::vector<Object> objects;
-  Sun sun;
+  DirectionalLight sun{Eigen::Vector3d::UnitZ(), Color::Zero()};
   Ambient ambient;
   std::optional<Dome> dome;
 };

@@ -33,10 +33,7 @@ std::optional<Vector2d> PixelThatSees(const Scene& scene, const std::vector<Obje
   const double distance = (x_in_world - ray.origin_in_world).norm();
   const auto hit = Trace(scene, ray);
   if (!hit || std::fabs(hit->distance - distance) > kSamePlace * distance) return std::nullopt;
-  for (const Object& passer_by : passers_by) {
-    const auto crossing = Intersect(passer_by.shape, ray);
-    if (crossing && crossing->distance < distance) return std::nullopt;
-  }
+  if (IsBlocked(passers_by, ray, distance)) return std::nullopt;
   return pixel;
 }
 

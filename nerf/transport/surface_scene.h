@@ -1,10 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "nerf/geometry/shapes.h"
+#include "nerf/geometry/shape_list.h"
 #include "nerf/light/environment_map.h"
 #include "nerf/light/lights.h"
 #include "nerf/material/brdf.h"
@@ -30,17 +29,6 @@ struct SurfaceScene {
   std::shared_ptr<const EnvironmentMap> environment;  // nullptr: darkness
 };
 
-// A point of a surface that a ray meets.
-struct SurfaceHit {
-  Eigen::Vector3d x_in_world;
-  Eigen::Vector3d normal_in_world;  // unit, on the side the ray comes from
-  const Surface* surface = nullptr;
-};
-
-// The first surface along a ray; nullopt where there is none.
-std::optional<SurfaceHit> FirstHit(const SurfaceScene& scene, const Ray& ray);
-
-// Whether any surface stands within a distance along a ray.
-bool IsBlocked(const SurfaceScene& scene, const Ray& ray, double distance);
+using SurfaceHit = Hit<Surface>;
 
 }  // namespace nerf

@@ -33,7 +33,7 @@ TEST(Radiance, OfALambertSphereIsAlbedoTimesIrradianceTimesCosineOverPi) {
   const Scene scene = MattSphere();
   for (const double x : {0.0, 0.3, 0.8}) {
     const Vector3d normal(x, 0, std::sqrt(1 - x * x));
-    const double cosine = normal.dot(scene.sun.direction_to_sun);
+    const double cosine = normal.dot(scene.sun.to_light);
     ExpectColor(Radiance(scene, Down(x, 0), 0), kAlbedo * scene.sun.irradiance * (cosine / kPi));
   }
 }
