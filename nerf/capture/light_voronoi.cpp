@@ -9,6 +9,7 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
+#include "nerf/base/quantile.h"
 
 namespace nerf {
 namespace {
@@ -95,9 +96,8 @@ float CosineOfReach(const Eigen::Matrix<float, Eigen::Dynamic, 3>& directions) {
       }
     }
   });
-  const auto middle = nearest.begin() + count / 2;
-  std::ranges::nth_element(nearest, middle);
-  const double reach = kReach * std::acos(std::clamp(static_cast<double>(*middle), -1.0, 1.0));
+  const double typical = UpperMedian(nearest);
+  const double reach = kReach * std::acos(std::clamp(typical, -1.0, 1.0));
   return static_cast<float>(std::cos(std::min(reach, pi)));
 }
 

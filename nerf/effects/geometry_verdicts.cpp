@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "nerf/inspect/photograph_fit.h"
+#include "nerf/base/quantile.h"
 #include "nerf/sampling/ray_marcher.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/scene_normalization.h"
