@@ -191,15 +191,6 @@ TEST(PathTracer, RefusesBouncesOutOfRange) {
   EXPECT_THAT(test::InputErrorOf([&] { PathTracer(scene, terms); }), HasSubstr("--bounces"));
 }
 
-TEST(SubsurfaceSphere, UnderUniformLightShowsTheTotalReflectance) {
-  // A ball much larger than the light's way in it is nearly flat; what its curvature takes from the
-  // straight distances is the rest.
-  const SubsurfaceSphere ball({{0, 0, 0}, 15}, Medium{{2, 2, 2}, {0.2, 0.5, 1.0}, 1.3});
-  const Color expected = ball.dipole().TotalDiffuseReflectance();
-  EXPECT_LT(((ball.UniformReflectance() - expected) / expected).abs().maxCoeff(), 0.08)
-      << ball.UniformReflectance().transpose() << " instead of " << expected.transpose();
-}
-
 TEST(SubsurfaceSphere, GlowsBeyondTheEdgeOfItsShadow) {
   SurfaceScene scene;
   const Sphere sphere{{0, 0, 0}, 1};
