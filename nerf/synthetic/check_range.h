@@ -6,7 +6,7 @@
 
 namespace nerf::synthetic {
 
-// Throws InputError, naming the flag, where a value is outside lowest .. highest.
+// Throws InputError, naming the flag, if a value is outside [lowest, highest].
 inline void CheckRange(std::string_view flag, int value, int lowest, int highest) {
   if (value >= lowest && value <= highest) return;
   throw InputError("{} is {}: choose a number from {} to {}", flag, value, lowest, highest);

@@ -27,7 +27,7 @@ std::optional<SceneHit> TraceDome(const Dome& dome, const Ray& ray) {
   return hit;
 }
 
-// The sun as a highlight of a perfect reflector; 0 in shadow.
+// The highlight of the sun on a perfect reflector; 0 in shadow.
 Color Highlight(const Scene& scene, const Ray& ray, const SceneHit& hit, bool in_sun) {
   if (!in_sun) return Color::Zero();
   const Vector3d mirrored = Mirrored(ray.direction_in_world, hit.normal_in_world);
@@ -37,7 +37,7 @@ Color Highlight(const Scene& scene, const Ray& ray, const SceneHit& hit, bool in
   return scene.sun.irradiance * lobe * hit.normal_in_world.dot(scene.sun.to_light);
 }
 
-// The light of the coat: what it mirrors, and the sun.
+// What the coat reflects: the mirrored scene, and the highlight of the sun.
 Color CoatRadiance(const Scene& scene, const Ray& ray, const SceneHit& hit, bool in_sun,
                    int bounces) {
   const Ray mirrored{hit.x_in_world, Mirrored(ray.direction_in_world, hit.normal_in_world)};
@@ -50,7 +50,7 @@ Color CoatRadiance(const Scene& scene, const Ray& ray, const SceneHit& hit, bool
 
 std::optional<SceneHit> Trace(const Scene& scene, const Ray& ray) {
   const auto nearest = FirstHit(scene.objects, ray);
-  // Nothing stands outside the dome, so whatever is met inside it is met first.
+  // All objects are inside the dome, so a hit on an object is closer than one on the dome.
   if (!nearest) return scene.dome ? TraceDome(*scene.dome, ray) : std::nullopt;
   const Object& object = *nearest->item;
   return SceneHit{

@@ -5,8 +5,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSlab =
-    0.08;  // thickness of the slab on which everything stands; its top is z = 0
+// Thickness of the slab on which the objects stand; its top is z = 0.
+constexpr double kSlab = 0.08;
 
 Object Standing(double x, double y, double radius, const Material& material) {
   return {Sphere{{x, y, radius}, radius}, material};
@@ -28,7 +28,7 @@ Material Slab() {
   return {.albedo = terrazzo};
 }
 
-// Soft on purpose: far away and seen at a slant, detail would be finer than a pixel.
+// Without fine detail, which would be smaller than a pixel far away and at grazing angles.
 Material Sand() {
   return {.albedo = Marble{.ramp = {ColorFromSrgbHex(0xc4aa7a), ColorFromSrgbHex(0xcfb78a),
                                     ColorFromSrgbHex(0xd8c399), ColorFromSrgbHex(0xe2d0ab)},

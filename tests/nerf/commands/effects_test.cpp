@@ -29,10 +29,10 @@ class EffectsCommands : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::ScratchFolder;
-    for (const char* occasion : {"exposure", "masks"}) {
+    for (const char* scenario : {"exposure", "masks"}) {
       const auto made = RunNerf(
-          fmt::format("sample {} --calls-for {} --views 17 --width 64 --height 48 --samples 2",
-                      Path(occasion), occasion));
+          fmt::format("sample {} --scenario {} --views 17 --width 64 --height 48 --samples 2",
+                      Path(scenario), scenario));
       ASSERT_EQ(made.exit_status, 0) << made.output;
     }
   }
@@ -126,9 +126,8 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
 // A pixel of each photograph that is a little transparent: not enough to be told by inspect, too
 // much for a background.
 TEST_F(EffectsCommands, ALittleAlphaIsNoReasonToStop) {
-  const auto made =
-      RunNerf("sample " + Path("sky") +
-              " --calls-for background --views 17 --width 64 --height 48 --samples 2");
+  const auto made = RunNerf("sample " + Path("sky") +
+                            " --scenario background --views 17 --width 64 --height 48 --samples 2");
   ASSERT_EQ(made.exit_status, 0) << made.output;
   const std::string names = RunNerf("train " + Path("sky/truth/sparse") + " -o " + Path("clear") +
                                     " --threads 2 --set train.steps=20")
@@ -246,7 +245,7 @@ TEST_F(EffectsCommands, RefuseWhatCannotBe) {
                 AllOf(HasSubstr("+rain"), HasSubstr("exposure")));
   ExpectRefused(Train("exposure", "x", "--effects exposure"), HasSubstr("+exposure"));
   ExpectRefused(Train("exposure", "x", "--set effects.rain={}"), HasSubstr("effects.rain"));
-  ExpectRefused("sample " + Path("y") + " --calls-for rain", HasSubstr("rain"));
+  ExpectRefused("sample " + Path("y") + " --scenario rain", HasSubstr("rain"));
   EXPECT_FALSE(fs::exists(Path("x")));
 
   const std::string masks = Path("masks/masks/view_003.png");

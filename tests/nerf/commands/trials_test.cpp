@@ -28,9 +28,9 @@ class TrialsCommands : public testing::Test {
  protected:
   std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
 
-  void Sample(const std::string& occasion, const std::string& flags) const {
+  void Sample(const std::string& scenario, const std::string& flags) const {
     const auto made = RunNerf(
-        fmt::format("sample {} --calls-for {} --samples 2 {}", Path("photos"), occasion, flags));
+        fmt::format("sample {} --scenario {} --samples 2 {}", Path("photos"), scenario, flags));
     ASSERT_EQ(made.exit_status, 0) << made.output;
   }
 
@@ -100,7 +100,7 @@ TEST_F(TrialsCommands, ATrialThatComesToNoNumberDecidesNothing) {
 
 // Poses and the points that depth learns from, which trials alone make use of.
 TEST_F(TrialsCommands, PosesAndDepthInBetweenAreTried) {
-  ASSERT_NO_FATAL_FAILURE(Sample("poses", "--views 18 --width 96 --height 72"));
+  ASSERT_NO_FATAL_FAILURE(Sample("pose_refinement", "--views 18 --width 96 --height 72"));
   const auto run = RunNerf(Train("sparse", "run", std::string("--effects -view ") + kShort));
   ASSERT_EQ(run.exit_status, 0) << run.output;
   EXPECT_THAT(Tried("run"), UnorderedElementsAre("depth", "poses")) << run.output;
@@ -110,7 +110,7 @@ TEST_F(TrialsCommands, PosesAndDepthInBetweenAreTried) {
 
 // The points are read for the trial; a run that resumes reads those that the run kept.
 TEST_F(TrialsCommands, DepthThatATrialDecidedForResumes) {
-  ASSERT_NO_FATAL_FAILURE(Sample("depth", "--views 12 --width 96 --height 72"));
+  ASSERT_NO_FATAL_FAILURE(Sample("depth_supervision", "--views 12 --width 96 --height 72"));
   // Large batches, so that trials fit, of rays that are few.
   const std::string more =
       "--effects -view,-poses,-exposure,-robust,-background,-footprint --set train.steps=120 "

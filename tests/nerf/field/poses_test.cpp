@@ -201,7 +201,7 @@ TEST(Poses, OfALensCountForPhotographsThatAreHeldOutToo) {
 TEST(Poses, AreFoundByTraining) {
   const test::ScratchFolder folder;
   synthetic::SampleOptions options;
-  options.occasion = synthetic::Occasion::kPoses;
+  options.scenario = synthetic::Scenario::kPoseRefinement;
   options.views = 24;
   options.width = 120;
   options.height = 90;

@@ -41,7 +41,7 @@ int NeighbourOf(const PosedImages& posed, int point) {
 TEST(TrackColors, APointThatTheNeighbourSeesIsMissed) {
   const test::ScratchFolder folder;
   synthetic::SampleOptions options;
-  options.occasion = synthetic::Occasion::kNothing;
+  options.scenario = synthetic::Scenario::kNothing;
   options.views = 30;
   options.width = 120;
   options.height = 90;

@@ -26,7 +26,7 @@ struct FewPhotographs {
 
   FewPhotographs() {
     synthetic::SampleOptions options;
-    options.occasion = synthetic::Occasion::kDepth;
+    options.scenario = synthetic::Scenario::kDepthSupervision;
     options.views = 10;
     options.width = 96;
     options.height = 72;

@@ -29,7 +29,7 @@ TEST(LightStage, RelitIsWhatIsSeenDirectlyUnderTheEnvironment) {
   const auto map = std::make_shared<EnvironmentMap>(test::SmoothEnvironment());
   const StageCamera camera = LightStageCamera(48, 27);
   SurfaceScene subject = LightStageSubject();
-  const Image direct = PhotographUnder(subject, map, camera, 512).color;
+  const Image direct = RenderUnder(subject, map, camera, 512).color;
   const double stops = AutoExposure(direct);
   const auto psnr = [&](int count) {
     OlatCapture capture;
@@ -38,7 +38,7 @@ TEST(LightStage, RelitIsWhatIsSeenDirectlyUnderTheEnvironment) {
         RelightWeights(capture, LightVoronoi(capture.lights, map->height()), *map, 0);
     Image relit(48, 27, 3, ColorEncoding::kLinear);
     for (std::size_t i = 0; i < capture.lights.size(); ++i) {
-      const Image image = PhotographUnder(subject, capture.lights[i], camera);
+      const Image image = RenderUnder(subject, capture.lights[i], camera);
       for (std::size_t p = 0; p < relit.pixels.size(); ++p) {
         relit.pixels[p] +=
             static_cast<float>(weights[i][static_cast<int>(p % 3)]) * image.pixels[p];
@@ -62,9 +62,9 @@ TEST(LightStage, DressesTheThirdBallInAMeasuredBrdf) {
   SurfaceScene measured =
       LightStageSubject(std::make_shared<MerlBrdf>(MerlBrdf::Measure(analytic)));
   SurfaceScene matt = LightStageSubject(std::make_shared<Lambert>(Color::Constant(0.5)));
-  const Image truth = PhotographUnder(gold, light, camera);
-  EXPECT_GT(Psnr(PhotographUnder(measured, light, camera), truth), 35);
-  EXPECT_LT(Psnr(PhotographUnder(matt, light, camera), truth), 30);
+  const Image truth = RenderUnder(gold, light, camera);
+  EXPECT_GT(Psnr(RenderUnder(measured, light, camera), truth), 35);
+  EXPECT_LT(Psnr(RenderUnder(matt, light, camera), truth), 30);
 }
 
 // Each term adds light, or takes it away: no light passes unseen from one to the next.
@@ -75,7 +75,7 @@ TEST(LightStage, ShadowsTakeLightAndBouncesGiveSomeBack) {
   const auto brightness = [&](bool shadows, int bounces) {
     TransportTerms terms{.emission = false, .shadows = shadows, .bounces = bounces};
     double sum = 0;
-    for (const float value : PhotographUnder(subject, light, camera, terms).pixels) sum += value;
+    for (const float value : RenderUnder(subject, light, camera, terms).pixels) sum += value;
     return sum;
   };
   EXPECT_GT(brightness(false, 0), 1.05 * brightness(true, 0));
