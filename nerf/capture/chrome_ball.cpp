@@ -8,7 +8,7 @@
 
 #include "nerf/base/input_error.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector2d;
@@ -102,4 +102,4 @@ Vector3d LightFromHighlight(const Image& photo, const BallOutline& ball, const s
   return (2 * normal.z() * normal - Vector3d::UnitZ()).normalized();
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -5,7 +5,7 @@
 
 #include "nerf/image/image.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Where a mirroring ball stands in a picture, seen from far away (orthographic).
 struct BallOutline {
@@ -28,4 +28,4 @@ BallOutline FindBall(const Image& mask, const std::string& name);
 Eigen::Vector3d LightFromHighlight(const Image& photo, const BallOutline& ball,
                                    const std::string& name);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

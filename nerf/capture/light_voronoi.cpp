@@ -9,8 +9,9 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
+#include "nerf/base/quantile.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -95,9 +96,8 @@ float CosineOfReach(const Eigen::Matrix<float, Eigen::Dynamic, 3>& directions) {
       }
     }
   });
-  const auto middle = nearest.begin() + count / 2;
-  std::ranges::nth_element(nearest, middle);
-  const double reach = kReach * std::acos(std::clamp(static_cast<double>(*middle), -1.0, 1.0));
+  const double typical = UpperMedian(nearest);
+  const double reach = kReach * std::acos(std::clamp(typical, -1.0, 1.0));
   return static_cast<float>(std::cos(std::min(reach, pi)));
 }
 
@@ -180,4 +180,4 @@ std::vector<Color> LightVoronoi::Sums(const EnvironmentMap& map, double degrees)
   return sums;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

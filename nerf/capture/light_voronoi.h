@@ -7,7 +7,7 @@
 #include "nerf/light/environment_map.h"
 #include "nerf/light/lights.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // The patch of the sphere for which each light of a capture stands. On a full grid of latitude and
 // longitude (about y) a patch lies between the middles of neighbouring rows and columns, and its
@@ -54,4 +54,4 @@ class LightVoronoi {
 // lights has about 100 pixels.
 int CellRows(int lights, int map_height);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -9,7 +9,7 @@
 
 #include "nerf/base/input_error.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 constexpr float kSteepest = 0.05f;  // n_z below which a slope is cut off: 87 degrees
@@ -104,4 +104,4 @@ Image IntegrateNormals(const Image& normal) {
   return height;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

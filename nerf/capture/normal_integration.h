@@ -2,7 +2,7 @@
 
 #include "nerf/image/image.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Depth from normals: the surface z(x, y) whose slopes are as near as possible to those of the
 // normals, in the sense of least squares; orthographic.
@@ -17,4 +17,4 @@ namespace nerf::appearance {
 inline constexpr int kMostPixels = 1'500'000;
 Image IntegrateNormals(const Image& normal);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

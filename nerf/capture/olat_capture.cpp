@@ -12,7 +12,7 @@
 #include "nerf/image/image_io.h"
 #include "nerf/light/light_file.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -223,4 +223,4 @@ std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, Input
   return lights;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

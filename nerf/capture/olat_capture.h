@@ -8,7 +8,7 @@
 #include "nerf/image/linear_image.h"
 #include "nerf/light/lights.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Photographs of one subject by one camera, each under one light ("one light at a time").
 struct OlatCapture {
@@ -47,4 +47,4 @@ void RefuseAmongImages(const OlatCapture& capture, const std::filesystem::path& 
 // Throws InputError naming the file.
 std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, InputEncoding encoding);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -6,12 +6,15 @@
 #include <vector>
 
 #include "nerf/base/atomic_file.h"
+#include "nerf/base/quantile.h"
 #include "nerf/capture/normal_integration.h"
 #include "nerf/geometry/height_mesh.h"
+#include "nerf/geometry/ply_file.h"
+#include "nerf/image/image_convert.h"
 #include "nerf/image/image_io.h"
 #include "nerf/output/color_map.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 constexpr double kCutOff = 0.98;         // share of the albedos that a picture shows unclamped
@@ -22,9 +25,7 @@ float ScaleToLookAt(const Image& albedo) {
   std::vector<float> values;
   std::ranges::copy_if(albedo.pixels, std::back_inserter(values), [](float v) { return v > 0; });
   if (values.empty()) return 1;
-  const auto rank = static_cast<std::ptrdiff_t>(kCutOff * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, values.begin() + rank);
-  return 1 / values[static_cast<std::size_t>(rank)];
+  return 1 / Quantile(values, kCutOff);
 }
 
 Image Scaled(Image image, float factor) {
@@ -57,8 +58,8 @@ void WritePhotometricFolder(const std::filesystem::path& folder, const Photometr
   // A mesh of very many pixels is made of blocks of them.
   const double share = static_cast<double>(maps.pixels) / kMostPixels;
   const int block = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
-  WriteHeightMesh(folder / "depth.ply", IntegrateNormals(Downscale(maps.normal, block)),
-                  Downscale(Scaled(maps.albedo, scale), block));
+  WritePly(folder / "depth.ply", MeshFromHeights(IntegrateNormals(Downscale(maps.normal, block)),
+                                                 Downscale(Scaled(maps.albedo, scale), block)));
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

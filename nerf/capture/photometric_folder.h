@@ -4,7 +4,7 @@
 
 #include "nerf/capture/photometric_maps.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Writes what photometric stereo found into a folder, which is made where it does not exist; of
 // each map one file to look at and one of measurements:
@@ -17,4 +17,4 @@ namespace nerf::appearance {
 // Throws InputError where a file cannot be written.
 void WritePhotometricFolder(const std::filesystem::path& folder, const PhotometricMaps& maps);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

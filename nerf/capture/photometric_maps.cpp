@@ -10,8 +10,9 @@
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/progress.h"
+#include "nerf/base/quantile.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -132,13 +133,6 @@ Solved SolvePixel(const PhotometricSolver& solver, const OlatCapture& capture,
   return solved;
 }
 
-double Median(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 // Solves some pixels into the maps, several at a time.
 //   solved  of all pixels before these, for the progress line
 void SolvePixels(const PhotometricSolver& solver, const OlatCapture& capture,
@@ -179,7 +173,7 @@ void Summarise(std::span<const int> pixels, PhotometricMaps& maps) {
     }
   }
   maps.pixels = static_cast<int>(pixels.size());
-  maps.median_residual = Median(std::move(residuals));
+  maps.median_residual = UpperMedian(residuals);
 }
 
 // Of `pixels`, or of about `most` of them, evenly.
@@ -250,4 +244,4 @@ Image NormalsToLookAt(const Image& normal) {
   return picture;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -8,7 +8,7 @@
 #include "nerf/capture/photometric_stereo.h"
 #include "nerf/image/image.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // What photometric stereo says of each pixel. All linear, of the photographs' size; outside the
 // mask, and where nothing could be said, everything is 0.
@@ -47,4 +47,4 @@ Image RelitByNormals(const PhotometricMaps& maps, const DirectionalLight& light)
 // Normals as people look at them: (n + 1) / 2 as the values of an 8-bit file; black outside.
 Image NormalsToLookAt(const Image& normal);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -9,7 +9,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/base/random.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Matrix3d;
@@ -192,4 +192,4 @@ SurfaceEstimate PhotometricSolver::Robust(std::span<const double> observations) 
   return estimate;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

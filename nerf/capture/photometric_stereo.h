@@ -7,7 +7,7 @@
 
 #include "nerf/light/lights.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 enum class StereoMethod { kLeastSquares, kRobust, kAuto };
 
@@ -68,4 +68,4 @@ class PhotometricSolver {
   std::vector<Triple> triples_;
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

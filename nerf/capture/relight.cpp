@@ -6,9 +6,10 @@
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/progress.h"
+#include "nerf/base/quantile.h"
 #include "nerf/light/units.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 constexpr double kBright = 0.98;  // share of pixels that stay below kBrightValue
@@ -90,10 +91,7 @@ double AutoExposure(const Image& picture) {
     const float* pixel = &picture.pixels[i];
     brightest.push_back(std::max({pixel[0], pixel[1], pixel[2]}));
   }
-  const auto rank =
-      static_cast<std::ptrdiff_t>(kBright * static_cast<double>(brightest.size() - 1));
-  std::ranges::nth_element(brightest, brightest.begin() + rank);
-  const double value = brightest[static_cast<std::size_t>(rank)];
+  const double value = Quantile(brightest, kBright);
   return value > 0 ? std::log2(kBrightValue / value) : 0;
 }
 
@@ -103,4 +101,4 @@ Image Exposed(Image picture, double stops) {
   return picture;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

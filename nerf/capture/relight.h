@@ -9,7 +9,7 @@
 #include "nerf/image/image.h"
 #include "nerf/light/environment_map.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // What a capture's images must be multiplied with and summed to show its subject under an
 // environment: L(x, y) = sum over lights of R_xy(light) L_i dA, where R = image / irradiance is the
@@ -43,4 +43,4 @@ double AutoExposure(const Image& picture);
 // A picture made brighter by so many stops: times 2^stops.
 Image Exposed(Image picture, double stops);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -8,9 +8,8 @@
 namespace nerf {
 
 // --encoding auto|srgb|linear: what the numbers of the given images mean.
-inline void AddInputEncodingOption(CLI::App& command, appearance::InputEncoding& encoding,
+inline void AddInputEncodingOption(CLI::App& command, InputEncoding& encoding,
                                    const std::string& meaning) {
-  using appearance::InputEncoding;
   AddChoiceOption<InputEncoding>(command, "--encoding", encoding,
                                  {{"auto", InputEncoding::kAuto},
                                   {"srgb", InputEncoding::kSrgb},

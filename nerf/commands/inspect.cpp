@@ -104,7 +104,7 @@ void AddInspectCommand(CLI::App& app) {
       "Examples:\n"
       "  nerf inspect photos/fox/colmap --picture fox.png\n"
       "  nerf inspect photos/fox/colmap\n"
-      "  nerf sample drift --calls-for exposure && nerf inspect drift/truth/sparse");
+      "  nerf sample drift --scenario exposure && nerf inspect drift/truth/sparse");
   command->callback([arguments] { RunInspect(*arguments); });
 }
 

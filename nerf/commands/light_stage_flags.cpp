@@ -9,35 +9,38 @@
 namespace nerf {
 
 void AddLightStageFlags(CLI::App& command, LightStageFlags& flags) {
-  appearance::LightStageOptions& options = flags.options;
+  synthetic::LightStageOptions& options = flags.options;
   CLI::Option* stage = command.add_option(
       "--light-stage", options.lights,
-      "instead: a subject on a table under so many lights, one at a time, for nerf relight");
+      "instead of a sample: a subject under this many lights, one at a time, for nerf relight");
   flags.light_stage = stage;
-  // What would be ignored without a word.
-  for (const char* ordinary : {"--views", "--samples", "--seed", "--calls-for"}) {
-    stage->excludes(command.get_option(ordinary));
+  // Flags that would be ignored are an error.
+  for (const char* sample_flag : {"--views", "--samples", "--seed", "--scenario"}) {
+    stage->excludes(command.get_option(sample_flag));
   }
   CLI::Option* environment = command.add_option(
       "--environment", options.environment,
-      "with --light-stage: a map; the subject directly under it is truth/direct.exr");
+      "with --light-stage: a map; truth/direct.exr shows the subject rendered directly under it");
   environment->needs(stage);
   command
       .add_option("--paths", options.paths,
-                  "with --environment: of light, in each quarter of a pixel of that picture")
+                  "with --environment: light paths for each of the four samples of a pixel of that "
+                  "picture")
       ->capture_default_str()
       ->needs(environment);
   command
-      .add_option(
-          "--merl", options.merl,
-          "with --light-stage: a measured BRDF in MERL's binary format, for the ball of gold")
+      .add_option("--merl", options.merl,
+                  "with --light-stage: a measured BRDF in the binary format of MERL, in place of "
+                  "the gold ball's")
       ->needs(stage);
   command
       .add_option("--bounces", options.terms.bounces,
-                  "with --light-stage: further surfaces that light may visit; above 0 it is noisy")
+                  "with --light-stage: indirect bounces; above 0 the images are noisy")
       ->capture_default_str()
       ->needs(stage);
-  command.add_flag("!--no-shadows", options.terms.shadows, "with --light-stage: light all through")
+  command
+      .add_flag("!--no-shadows", options.terms.shadows,
+                "with --light-stage: light passes through surfaces")
       ->needs(stage);
 }
 
@@ -46,11 +49,11 @@ void RunLightStage(const std::filesystem::path& folder, const LightStageFlags& f
   const Stopwatch watch;
   UseThreads(threads);
   const auto& stop = StopOnInterrupt();
-  appearance::LightStageOptions options = flags.options;
+  synthetic::LightStageOptions options = flags.options;
   options.width = width;
   options.height = height;
-  if (!appearance::WriteLightStage(folder, options, [&] { return !stop; })) {
-    fmt::print("stopped; {} holds no whole capture\n", folder.string());
+  if (!synthetic::WriteLightStage(folder, options, [&] { return !stop; })) {
+    fmt::print("stopped; the capture in {} is incomplete\n", folder.string());
     throw CLI::RuntimeError(130);
   }
   fmt::print(

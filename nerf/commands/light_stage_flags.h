@@ -7,18 +7,19 @@
 
 namespace nerf {
 
-// --light-stage and what goes with it, of `nerf sample`.
+// The flag --light-stage of `nerf sample`, and those that need it.
 struct LightStageFlags {
-  appearance::LightStageOptions options;
+  synthetic::LightStageOptions options;
   const CLI::Option* light_stage = nullptr;
 
-  // Whether a light stage is asked for, if only with a number of lights that is refused later.
+  // Whether --light-stage was given, with a valid number of lights or not.
   bool Given() const { return light_stage != nullptr && light_stage->count() > 0; }
 };
-// To be added after the flags of the ordinary sample, most of which it excludes.
+// Call after the flags of an ordinary sample have been added, for most of them are excluded.
 void AddLightStageFlags(CLI::App& command, LightStageFlags& flags);
 
-// Writes the capture and says so. Throws InputError, and CLI::RuntimeError after Ctrl-C.
+// Writes the capture and prints what was written. Throws InputError, and CLI::RuntimeError after
+// Ctrl-C.
 void RunLightStage(const std::filesystem::path& folder, const LightStageFlags& flags, int width,
                    int height, int threads);
 

@@ -18,15 +18,12 @@
 namespace nerf {
 namespace {
 
-using appearance::InputEncoding;
-using appearance::StereoMethod;
-
 struct StereoArguments {
   std::string folder;
   std::string output;
-  appearance::OlatOptions capture;
-  appearance::StereoOptions stereo;
-  int memory_mb = static_cast<int>(appearance::kObservationBytes >> 20);
+  OlatOptions capture;
+  StereoOptions stereo;
+  int memory_mb = static_cast<int>(kObservationBytes >> 20);
   int threads = 0;
 
   void Check() const {
@@ -39,16 +36,16 @@ void RunPhotometricStereo(const StereoArguments& arguments) {
   const Stopwatch watch;
   arguments.Check();
   UseThreads(arguments.threads);
-  const auto capture = appearance::FindOlatCapture(arguments.folder, arguments.capture);
+  const auto capture = FindOlatCapture(arguments.folder, arguments.capture);
   const std::filesystem::path folder =
       arguments.output.empty() ? capture.name + "-normals" : arguments.output;
-  appearance::RefuseAmongImages(capture, folder);
+  RefuseAmongImages(capture, folder);
   const InputEncoding encoding = arguments.capture.encoding == InputEncoding::kAuto
-                                     ? appearance::EncodingByResidual(capture)
+                                     ? EncodingByResidual(capture)
                                      : arguments.capture.encoding;
-  const auto maps = appearance::SolvePhotometricStereo(capture, encoding, arguments.stereo,
-                                                       std::int64_t{arguments.memory_mb} << 20);
-  appearance::WritePhotometricFolder(folder, maps);
+  const auto maps = SolvePhotometricStereo(capture, encoding, arguments.stereo,
+                                           std::int64_t{arguments.memory_mb} << 20);
+  WritePhotometricFolder(folder, maps);
   const double share = 100.0 / std::max(1, maps.pixels);
   fmt::print(
       "{}: {} images, taken as {}, lights from {}\n"

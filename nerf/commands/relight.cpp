@@ -27,7 +27,6 @@ namespace nerf {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace appearance;
 
 constexpr double kFramesPerSecond = 24;
 constexpr std::size_t kFewestLights = 3;

@@ -15,13 +15,12 @@ namespace {
 struct SampleArguments {
   LightStageFlags light_stage;
   std::string folder;
-  std::string calls_for = "built-in";
-  sample::SampleOptions options;
+  synthetic::SampleOptions options;
 };
 
 void RunSample(const SampleArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
-  sample::WriteSample(folder, arguments.options);
+  synthetic::WriteSample(folder, arguments.options);
   fmt::print(
       "{} photographs are in {}; true poses, depth, normals and albedo, for tests only, in {}\n"
       "next: nerf train {}\n",
@@ -29,45 +28,53 @@ void RunSample(const SampleArguments& arguments) {
       folder.string());
 }
 
+void AddScenarioOption(CLI::App& command, synthetic::Scenario& scenario) {
+  command
+      .add_option_function<std::string>(
+          "--scenario,--calls-for",
+          [&scenario](const std::string& name) { scenario = synthetic::ScenarioFromName(name); },
+          "what the capture needs: " + synthetic::ScenarioNames() +
+              "; --calls-for is the former name of this flag and will be removed in the next "
+              "version")
+      ->default_str("built-in");
+}
+
 }  // namespace
 
 void AddSampleCommand(CLI::App& app) {
   auto arguments = std::make_shared<SampleArguments>();
-  sample::SampleOptions& options = arguments->options;
-  CLI::App* command =
-      app.add_subcommand("sample", "Photographs of a small built-in scene, to train on");
+  synthetic::SampleOptions& options = arguments->options;
+  CLI::App* command = app.add_subcommand(
+      "sample", "Generates photographs of a small built-in scene, for a first training and tests");
   command
-      ->add_option("folder", arguments->folder, "where the photographs go: new, empty, or a sample")
+      ->add_option("folder", arguments->folder,
+                   "output folder: new, empty, or an earlier sample, which is replaced")
       ->required();
-  command
-      ->add_option("--calls-for", arguments->calls_for,
-                   "a capture that calls for one effect: " + sample::OccasionNames())
-      ->capture_default_str();
-  const CLI::Option* const views = command->add_option(
-      "--views", options.views, "how many photographs [36; few where they call for depth]");
-  command->add_option("--width", options.width, "of a photograph, in pixels")
-      ->capture_default_str();
-  command->add_option("--height", options.height, "of a photograph, in pixels")
-      ->capture_default_str();
+  AddScenarioOption(*command, options.scenario);
+  const CLI::Option* const views =
+      command->add_option("--views", options.views,
+                          "number of photographs [36; depth_supervision: 10, anti_aliasing: 64]");
+  command->add_option("--width", options.width, "of a photograph, pixels")->capture_default_str();
+  command->add_option("--height", options.height, "of a photograph, pixels")->capture_default_str();
   command->add_option("--samples", options.samples_per_pixel, "rays averaged in each pixel")
       ->capture_default_str();
-  command->add_option("--seed", options.seed, "another number moves the cameras a little")
+  command->add_option("--seed", options.seed, "of the irregular camera positions and of all noise")
       ->capture_default_str();
   command->add_option("--threads", options.threads, "0: all cores")->capture_default_str();
   AddLightStageFlags(*command, arguments->light_stage);
   command->footer(
       "Examples:\n"
-      "  nerf sample stage --light-stage 256       one light at a time, for nerf relight\n"
-      "  nerf sample demo                          36 photographs in demo/images\n"
+      "  nerf sample demo                             36 photographs in demo/images\n"
+      "  nerf train demo                              then train on them\n"
       "  nerf sample demo --views 60 --width 800 --height 600\n"
-      "  nerf sample drift --calls-for exposure    exposure and white balance change\n"
-      "  nerf sample far --calls-for footprint     half of the cameras stand four times as far\n"
-      "  nerf sample loose --calls-for poses       poses a little wrong; the true ones beside\n"
-      "  nerf train demo                           then train on them");
+      "  nerf sample drift --scenario exposure        exposure and white balance change\n"
+      "  nerf sample far --scenario anti_aliasing     half of the cameras are four times as far\n"
+      "  nerf sample loose --scenario pose_refinement poses slightly wrong, with the true ones\n"
+      "  nerf sample stage --light-stage 256          one light at a time, for nerf relight");
   command->callback([arguments, views] {
-    const sample::Occasion occasion = sample::OccasionFromName(arguments->calls_for);
-    arguments->options.occasion = occasion;
-    if (views->count() == 0) arguments->options.views = sample::UsualViews(occasion);
+    if (views->count() == 0) {
+      arguments->options.views = synthetic::DefaultViewCount(arguments->options.scenario);
+    }
     if (arguments->light_stage.Given()) {
       RunLightStage(arguments->folder, arguments->light_stage, arguments->options.width,
                     arguments->options.height, arguments->options.threads);

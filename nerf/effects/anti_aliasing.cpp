@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nerf/base/quantile.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {

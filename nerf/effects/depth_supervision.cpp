@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "nerf/base/quantile.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {

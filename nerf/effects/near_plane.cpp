@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "nerf/base/quantile.h"
 #include "nerf/sampling/ray_marcher.h"
 
 namespace nerf {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "nerf/base/quantile.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {

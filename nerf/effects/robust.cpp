@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "nerf/base/quantile.h"
+
 namespace nerf {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "nerf/base/quantile.h"
 #include "nerf/inspect/angle_residuals.h"
 
 namespace nerf {

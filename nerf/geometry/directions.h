@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Directions drawn from uniform numbers in [0,1)^2, and frames about a normal. All unit vectors.
 
@@ -52,4 +52,4 @@ inline Eigen::Matrix3d WorldFromSurface(const Eigen::Vector3d& normal) {
   return axes;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

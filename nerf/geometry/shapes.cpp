@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-namespace nerf::sample {
+namespace nerf {
 namespace {
 
 using Eigen::Vector2d;
@@ -94,4 +94,4 @@ Vector3d ShapeFromWorld(const Shape& shape, const Vector3d& x_in_world) {
       shape);
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf

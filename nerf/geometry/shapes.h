@@ -4,7 +4,7 @@
 #include <optional>
 #include <variant>
 
-namespace nerf::sample {
+namespace nerf {
 
 struct Ray {
   Eigen::Vector3d origin_in_world;
@@ -49,4 +49,4 @@ std::optional<Intersection> Intersect(const Shape& shape, const Ray& ray, double
 // live in this frame.
 Eigen::Vector3d ShapeFromWorld(const Shape& shape, const Eigen::Vector3d& x_in_world);
 
-}  // namespace nerf::sample
+}  // namespace nerf

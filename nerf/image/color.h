@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Linear RGB with the primaries and the white of sRGB: radiance, irradiance, or reflectance, which
 // multiply channel by channel. sRGB's transfer function is met at the edge only (nerf/data).
@@ -13,4 +13,4 @@ inline double Luminance(const Color& color) {
   return 0.2126 * color.x() + 0.7152 * color.y() + 0.0722 * color.z();
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

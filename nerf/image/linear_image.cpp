@@ -8,7 +8,7 @@
 #include "nerf/image/image_convert.h"
 #include "nerf/image/image_io.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 Image WithoutAlpha(const Image& image) {
@@ -53,4 +53,4 @@ Image ReadLinearImage(const std::filesystem::path& file, InputEncoding encoding)
   return image.encoding == ColorEncoding::kLinear ? image : ToLinear(image);
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

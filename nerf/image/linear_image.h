@@ -4,7 +4,7 @@
 
 #include "nerf/image/image.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // What the numbers of an image file mean.
 enum class InputEncoding {
@@ -27,4 +27,4 @@ bool StoresIntegers(const std::filesystem::path& file);
 // Throws InputError naming the file.
 Image ReadLinearImage(const std::filesystem::path& file, InputEncoding encoding);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

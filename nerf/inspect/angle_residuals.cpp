@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "nerf/base/quantile.h"
+
 namespace nerf {
 namespace {
 

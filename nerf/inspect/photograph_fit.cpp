@@ -1,7 +1,5 @@
 #include "nerf/inspect/photograph_fit.h"
 
-#include <algorithm>
-
 namespace nerf {
 namespace {
 
@@ -32,13 +30,6 @@ void TakeMeans(std::span<const Sighting> sightings, int Sighting::*group, bool r
 }
 
 }  // namespace
-
-double Quantile(std::span<double> values, double q) {
-  if (values.empty()) return 0;
-  const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[k];
-}
 
 PhotographFit FitPhotographs(std::span<const Sighting> sightings, std::size_t points,
                              std::size_t photographs) {

@@ -22,7 +22,4 @@ struct PhotographFit {
 PhotographFit FitPhotographs(std::span<const Sighting> sightings, std::size_t points,
                              std::size_t photographs);
 
-// Of the values, which are put in another order: the one below which the share `q` lies; 0 of none.
-double Quantile(std::span<double> values, double q);
-
 }  // namespace nerf

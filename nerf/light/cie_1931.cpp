@@ -1,6 +1,6 @@
 #include "nerf/light/cie_1931.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Table = std::array<std::array<double, 3>, Spectrum::kSamples>;
@@ -117,4 +117,4 @@ const Table& MatchingFunctions() { return kMatching; }
 
 const Table& DaylightComponents() { return kDaylight; }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -4,7 +4,7 @@
 
 #include "nerf/light/spectrum.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Colour matching functions x, y, z of the CIE 1931 standard observer (2 degrees), at the
 // wavelengths of a Spectrum; y is also V, the eye's luminous efficiency.
@@ -14,4 +14,4 @@ const std::array<std::array<double, 3>, Spectrum::kSamples>& MatchingFunctions()
 // The daylight components S0, S1, S2. Source: CIE 015:2018, table 6 (Judd et al. 1964).
 const std::array<std::array<double, 3>, Spectrum::kSamples>& DaylightComponents();
 
-}  // namespace nerf::appearance
+}  // namespace nerf

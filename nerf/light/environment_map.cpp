@@ -8,7 +8,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/image/linear_image.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -132,4 +132,4 @@ Color EnvironmentMap::Irradiance(const Vector3d& normal) const {
   return sum;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

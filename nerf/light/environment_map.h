@@ -9,7 +9,7 @@
 #include "nerf/image/color.h"
 #include "nerf/image/image.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Light from all directions, infinitely far away: radiance in a latitude-longitude picture, twice
 // as wide as high. The top row is straight up (+y), the middle of the picture straight ahead (-z),
@@ -63,4 +63,4 @@ class EnvironmentMap {
   std::vector<double> columns_;  // cumulative within each row [height][width + 1]
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -8,7 +8,7 @@
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 // The numbers of a line; nothing where one of its words is no finite number.
@@ -80,4 +80,4 @@ void WriteLights(const std::filesystem::path& file, std::span<const DirectionalL
   WriteFileAtomically(file, text);
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -6,7 +6,7 @@
 
 #include "nerf/light/lights.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Reads the lights of a capture, a line each, in the order of its images:
 //   x y z              direction from the subject to the light, of any length > 0
@@ -22,4 +22,4 @@ std::vector<DirectionalLight> ReadLights(const std::filesystem::path& file);
 // Writes such a file, with intensities where they are not 1. Throws InputError.
 void WriteLights(const std::filesystem::path& file, std::span<const DirectionalLight> lights);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

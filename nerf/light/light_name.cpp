@@ -5,7 +5,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/light/spectrum.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 constexpr std::string_view kBlackBody = "blackbody:";
@@ -50,4 +50,4 @@ std::optional<Color> ColorOfLight(std::string_view name) {
   return std::nullopt;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -5,7 +5,7 @@
 
 #include "nerf/image/color.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 inline constexpr const char* kLightNames = "D50, D65 (D40 to D250), A, E, blackbody:KELVIN";
 
@@ -17,4 +17,4 @@ inline constexpr const char* kLightNames = "D50, D65 (D40 to D250), A, E, blackb
 // Throws InputError where the temperature is out of range.
 std::optional<Color> ColorOfLight(std::string_view name);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -5,7 +5,7 @@
 
 #include "nerf/image/color.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Light from infinitely far away.
 struct DirectionalLight {
@@ -33,4 +33,4 @@ inline ArrivingLight Arriving(const PointLight& light, const Eigen::Vector3d& x_
   return {way / distance, distance, light.intensity / distance2};
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

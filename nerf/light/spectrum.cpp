@@ -4,7 +4,7 @@
 
 #include "nerf/light/cie_1931.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 constexpr double kReference = 560;  // nm, where illuminants are normalised
@@ -72,4 +72,4 @@ Color LinearSrgbFromXyz(const Eigen::Vector3d& xyz) {
   return (srgb_from_xyz * xyz).array();
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -5,7 +5,7 @@
 
 #include "nerf/image/color.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // A spectral power distribution, sampled where people see: 380 to 780 nm every 5 nm. Any unit per
 // nanometre; products and sums are by wavelength.
@@ -42,4 +42,4 @@ Eigen::Vector3d XyzFromSpectrum(const Spectrum& spectrum);
 // Source: IEC 61966-2-1.
 Color LinearSrgbFromXyz(const Eigen::Vector3d& xyz);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

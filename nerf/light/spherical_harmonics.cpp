@@ -5,7 +5,7 @@
 
 #include "nerf/geometry/directions.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 using Eigen::Vector3d;
 
@@ -61,4 +61,4 @@ ShError ShIrradianceError(const EnvironmentMap& map, int normals) {
   return error;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

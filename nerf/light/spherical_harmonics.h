@@ -5,7 +5,7 @@
 
 #include "nerf/light/environment_map.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // The nine real spherical harmonics of degree 0, 1 and 2 at a unit direction, orthonormal over the
 // sphere; order (l, m) = (0,0), (1,-1), (1,0), (1,1), (2,-2) ... (2,2).
@@ -34,4 +34,4 @@ struct ShError {
 };
 ShError ShIrradianceError(const EnvironmentMap& map, int normals);
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace nerf::appearance {
+namespace nerf {
 
 double LuminousEfficacy(const Spectrum& spectrum) {
   const double watts =
@@ -10,4 +10,4 @@ double LuminousEfficacy(const Spectrum& spectrum) {
   return watts > 0 ? kEfficacy * XyzFromSpectrum(spectrum).y() / watts : 0;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

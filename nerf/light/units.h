@@ -5,7 +5,7 @@
 
 #include "nerf/light/spectrum.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Radiometric to photometric units and back: what a lamp's box says, and what a meter says.
 
@@ -38,4 +38,4 @@ inline double LumensFromCandela(double candela) { return candela * 4 * std::numb
 // The factor of an exposure in stops: each doubles.
 inline double FactorFromStops(double stops) { return std::exp2(stops); }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -5,7 +5,7 @@
 
 #include "nerf/image/color.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // A direction drawn for light to come from.
 struct BrdfSample {
@@ -34,4 +34,4 @@ class Brdf {
   virtual double Pdf(const Eigen::Vector3d& w_o, const Eigen::Vector3d& w_i) const = 0;
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -6,7 +6,7 @@
 
 #include "nerf/geometry/directions.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -96,4 +96,4 @@ double CoatedDiffuse::Pdf(const Vector3d& w_o, const Vector3d& w_i) const {
   return share * facets_.MirroredPdf(w_o, w_i) + (1 - share) * w_i.z() / std::numbers::pi;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -4,7 +4,7 @@
 
 #include "nerf/material/microfacet.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // A matt base under a rough dielectric: plastic, varnish, glaze. The coat reflects as a microfacet
 // surface; what it does not reflect reaches the base and leaves it in all directions:
@@ -39,4 +39,4 @@ class CoatedDiffuse : public Brdf {
   double mean_reflectance_ = 0;
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -5,7 +5,7 @@
 
 #include "nerf/material/microfacet.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using std::numbers::pi;
@@ -18,9 +18,9 @@ double DiffuseFresnel(double eta) {
 
 }  // namespace
 
-Medium Marble() { return {{2.19, 2.62, 3.00}, {0.0021, 0.0041, 0.0071}, 1.5}; }
-Medium WholeMilk() { return {{2.55, 3.21, 3.77}, {0.0011, 0.0024, 0.014}, 1.3}; }
-Medium Skin() { return {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1.3}; }
+Medium MarbleMedium() { return {{2.19, 2.62, 3.00}, {0.0021, 0.0041, 0.0071}, 1.5}; }
+Medium WholeMilkMedium() { return {{2.55, 3.21, 3.77}, {0.0011, 0.0024, 0.014}, 1.3}; }
+Medium SkinMedium() { return {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1.3}; }
 
 Medium InUnits(const Medium& in_millimeters, double units_per_millimeter) {
   Medium medium = in_millimeters;
@@ -59,4 +59,4 @@ double Dipole::Transmittance(double n_dot_w) const {
   return 1 - SchlickFresnel(Color::Constant(F0_), n_dot_w).x();
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -2,7 +2,7 @@
 
 #include "nerf/image/color.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // What a translucent material does with light inside it, channel by channel.
 struct Medium {
@@ -12,9 +12,9 @@ struct Medium {
 };
 
 // Media that were measured, coefficients in 1 / mm. Source: Jensen et al. 2001, figure 5.
-Medium Marble();
-Medium WholeMilk();
-Medium Skin();
+Medium MarbleMedium();
+Medium WholeMilkMedium();
+Medium SkinMedium();
 
 // The same medium where a millimetre is so many units of length.
 Medium InUnits(const Medium& in_millimeters, double units_per_millimeter);
@@ -48,4 +48,4 @@ class Dipole {
   Color z_virtual_;  // height of its twin
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -4,7 +4,7 @@
 
 #include "nerf/geometry/directions.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 using Eigen::Vector3d;
 
@@ -23,4 +23,4 @@ double Lambert::Pdf(const Vector3d& w_o, const Vector3d& w_i) const {
   return w_o.z() <= 0 || w_i.z() <= 0 ? 0 : w_i.z() / std::numbers::pi;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -2,7 +2,7 @@
 
 #include "nerf/material/brdf.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // A matt surface: f_r = albedo / pi, the same from everywhere. Source: Lambert 1760.
 class Lambert : public Brdf {
@@ -19,4 +19,4 @@ class Lambert : public Brdf {
   Color albedo_;
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -12,7 +12,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/geometry/directions.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -229,4 +229,4 @@ double MerlBrdf::Pdf(const Vector3d& w_o, const Vector3d& w_i) const {
   return 0.5 * w_i.z() / pi + 0.5 * highlight;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

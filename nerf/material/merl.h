@@ -6,7 +6,7 @@
 
 #include "nerf/material/brdf.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Half and difference angles of a pair of directions. Source: Rusinkiewicz 1998.
 struct RusinkiewiczAngles {
@@ -58,4 +58,4 @@ class MerlBrdf : public Brdf {
   std::array<double, kThetaH + 1> cumulative_{};  // of the half vectors' distribution over theta_h
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -6,7 +6,7 @@
 
 #include "nerf/geometry/directions.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 using Eigen::Vector3d;
 
@@ -78,4 +78,4 @@ double Conductor::Pdf(const Vector3d& w_o, const Vector3d& w_i) const {
   return facets_.MirroredPdf(w_o, w_i);
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -2,7 +2,7 @@
 
 #include "nerf/material/brdf.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // A rough surface as a landscape of tiny mirrors: the distribution of their normals h by
 // Trowbridge and Reitz 1975 (GGX of Walter et al. 2007), shadowing and masking by Smith,
@@ -52,4 +52,4 @@ class Conductor : public Brdf {
   Ggx facets_;
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

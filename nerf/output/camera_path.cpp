@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "nerf/base/input_error.h"
+#include "nerf/base/quantile.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/scene_normalization.h"
 
@@ -85,13 +86,6 @@ Isometry3d FromParts(const Eigen::Matrix3d& rotation, const Vector3d& center) {
   world_from_camera.linear() = rotation;
   world_from_camera.translation() = center;
   return world_from_camera;
-}
-
-double Percentile90(std::vector<double> values) {
-  const std::size_t index = values.size() * 9 / 10;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index),
-                   values.end());
-  return values[index];
 }
 
 // The cameras that a path leads through, by name.
@@ -191,8 +185,10 @@ CameraPath SpiralPath(const PosedImages& images, const SceneNormalization& norma
     const Vector3d x_in_mean = world_from_mean.inverse() * image.world_from_camera.translation();
     for (int axis = 0; axis < 3; ++axis) offsets[axis].push_back(std::abs(x_in_mean[axis]));
   }
-  const Vector3d widths(Percentile90(offsets[0]), Percentile90(offsets[1]),
-                        Percentile90(offsets[2]));
+  Vector3d widths;
+  for (int axis = 0; axis < 3; ++axis) {
+    widths[axis] = ValueOfRank(offsets[axis], offsets[axis].size() * 9 / 10);
+  }
   double depth = (rig.focus - rig.mean_center).dot(forward);
   // Cameras that look outwards have no common focus before them: look far ahead of the spiral.
   if (rig.looks_outwards || !(depth > 0)) depth = std::max(1e-6, 10 * widths.norm());

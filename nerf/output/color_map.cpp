@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "nerf/base/input_error.h"
+#include "nerf/base/quantile.h"
 #include "nerf/image/image_convert.h"
 
 namespace nerf {
@@ -33,13 +34,8 @@ Range RangeOfOpaqueDepths(const Image& depth, const Image& opacity) {
     }
   }
   if (depths.empty()) return {};
-  const auto percentile = [&depths](double fraction) {
-    const auto index =
-        static_cast<std::ptrdiff_t>(fraction * static_cast<double>(depths.size() - 1));
-    std::nth_element(depths.begin(), depths.begin() + index, depths.end());
-    return depths[static_cast<std::size_t>(index)];
-  };
-  return {percentile(0.02), percentile(0.98)};
+  const float near = Quantile(depths, 0.02);
+  return {near, Quantile(depths, 0.98)};
 }
 
 void Store(const Eigen::Vector3f& color, float* pixel) { std::copy_n(color.data(), 3, pixel); }

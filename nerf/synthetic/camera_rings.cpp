@@ -7,10 +7,11 @@
 #include <numbers>
 #include <vector>
 
+#include "nerf/output/camera_path.h"
 #include "nerf/scene/camera.h"
 #include "nerf/synthetic/hash.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -18,10 +19,10 @@ using Eigen::Vector3d;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kVerticalFov = 40 * kDegree;
 constexpr double kDistance = 3.0;                      // scene units
-const Vector3d kSubject(0, 0, 0.25);                   // what the cameras look at
+const Vector3d kSubject(0, 0, 0.25);                   // where the cameras look
 const std::vector<double> kElevations = {14, 34, 56};  // degrees
 
-// Hashes as a stream of numbers in [-1, 1).
+// A stream of random numbers in [-1, 1).
 class Irregularity {
  public:
   explicit Irregularity(unsigned seed) : seed_(seed) {}
@@ -36,40 +37,27 @@ class Irregularity {
   int count_ = 0;
 };
 
-// Few views stay on one ring, where neighbours are still close to each other.
+// Few views share one ring, so that neighbours are still close to each other.
 std::vector<double> RingElevations(int views) {
   if (views < 12) return {25};
   if (views < 24) return {18, 42};
   return kElevations;
 }
 
-// How many of the views stand on each ring: in proportion to its circumference.
+// The number of views on each ring, in proportion to its circumference.
 std::vector<int> ViewsOnRings(int views, const std::vector<double>& elevations) {
   double total = 0;
   for (const double elevation : elevations) total += std::cos(elevation * kDegree);
   std::vector<int> counts;
-  double until_here = 0;
-  int given = 0;
+  double share = 0;  // of this ring and those before
+  int assigned = 0;
   for (const double elevation : elevations) {
-    until_here += std::cos(elevation * kDegree) / total;
-    const int until = static_cast<int>(std::lround(views * until_here));
-    counts.push_back(until - given);
-    given = until;
+    share += std::cos(elevation * kDegree) / total;
+    const int up_to_here = static_cast<int>(std::lround(views * share));
+    counts.push_back(up_to_here - assigned);
+    assigned = up_to_here;
   }
   return counts;
-}
-
-// OpenCV axes: z looks at the target, x to the right, y down.
-//   roll  radians about the viewing direction
-Eigen::Isometry3d LookAt(const Vector3d& position, const Vector3d& target, double roll) {
-  const Vector3d forward = (target - position).normalized();
-  const Vector3d right = forward.cross(Vector3d::UnitZ()).normalized();
-  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
-  world_from_camera.linear().col(0) = right;
-  world_from_camera.linear().col(1) = forward.cross(right);
-  world_from_camera.linear().col(2) = forward;
-  world_from_camera.translation() = position;
-  return world_from_camera * Eigen::AngleAxisd(roll, Vector3d::UnitZ());
 }
 
 }  // namespace
@@ -82,25 +70,27 @@ PosedImages CameraRings(const SampleOptions& options) {
   const std::vector<double> elevations = RingElevations(options.views);
   const std::vector<int> counts = ViewsOnRings(options.views, elevations);
   for (std::size_t ring = 0; ring < elevations.size(); ++ring) {
-    const double start = 137.5 * static_cast<double>(ring);  // no view straight above another
+    const double start =
+        137.5 * static_cast<double>(ring);  // so that no view is straight above another
     for (int i = 0; i < counts[ring]; ++i) {
       const double azimuth = (start + 360.0 * i / counts[ring] + 2 * irregular.Next()) * kDegree;
       const double elevation = (elevations[ring] + 2 * irregular.Next()) * kDegree;
       const auto view = static_cast<int>(posed.images.size());
       const double distance =
-          kDistance * DistanceFactor(options.occasion, view) * (1 + 0.05 * irregular.Next());
+          kDistance * DistanceFactor(options.scenario, view) * (1 + 0.05 * irregular.Next());
       const Vector3d position =
           distance * Vector3d(std::cos(azimuth) * std::cos(elevation),
                               std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
       const Vector3d target = kSubject + 0.08 * irregular.NextPoint();
       PosedImage image;
       image.name =
-          fmt::format("view_{:03}.{}", view, options.occasion == Occasion::kHdr ? "exr" : "png");
-      image.world_from_camera = LookAt(position, target, 3 * kDegree * irregular.Next());
+          fmt::format("view_{:03}.{}", view, options.scenario == Scenario::kHdr ? "exr" : "png");
+      const Eigen::AngleAxisd roll(3 * kDegree * irregular.Next(), Vector3d::UnitZ());
+      image.world_from_camera = LookAt(position, target, Vector3d::UnitZ()) * roll;
       posed.images.push_back(image);
     }
   }
   return posed;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -12,35 +12,18 @@
 #include "nerf/synthetic/camera_rings.h"
 #include "nerf/synthetic/hash.h"
 #include "nerf/synthetic/ray_tracer.h"
+#include "nerf/transport/pixel_rays.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kBounces = 2;
+constexpr int kBounces = 2;  // of mirrors
 
-Ray RayThrough(const Camera& camera, const Eigen::Isometry3d& world_from_camera,
-               const Vector2d& pixel) {
-  const auto direction_in_camera = DirectionFromPixel(camera, pixel);
-  if (!direction_in_camera) {
-    throw InputError("the camera has no ray for pixel ({}, {}): choose another lens", pixel.x(),
-                     pixel.y());
-  }
-  return {world_from_camera.translation(), world_from_camera.linear() * *direction_in_camera};
-}
-
-// The i-th of the points that fill the unit square evenly, whatever their number.
-// Source: Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences" (R2), shifted as
-// by Cranley and Patterson 1976.
-Vector2d SpreadPoint(int i, const Vector2d& shift) {
-  const double x = shift.x() + 0.7548776662466927 * i;
-  const double y = shift.y() + 0.5698402909980532 * i;
-  return {x - std::floor(x), y - std::floor(y)};
-}
-
-void Store(const Vector3d& value, float* pixel) {
+template <class Triple>
+void Store(const Triple& value, float* pixel) {
   for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(value[c]);
 }
 
@@ -50,48 +33,44 @@ Color PixelRadiance(const Scene& scene, const Camera& camera,
   const Vector2d shift(UnitFromHash(Hash(x, y, 0, seed)), UnitFromHash(Hash(x, y, 1, seed)));
   Color sum = Color::Zero();
   for (int i = 0; i < samples_per_pixel; ++i) {
-    const Vector2d pixel = Vector2d(x, y) + SpreadPoint(i, shift);
-    sum += Radiance(scene, RayThrough(camera, world_from_camera, pixel), kBounces);
+    const Vector2d pixel = Vector2d(x, y) + PointInPixel(i, shift);
+    sum += Radiance(scene, RayThroughPixel(camera, world_from_camera, pixel), kBounces);
   }
   return sum / samples_per_pixel;
 }
 
-// What a camera stores of the light of a pixel.
-void StorePhoto(const Color& radiance, const Photography& photography, float* pixel) {
+// Stores what a camera makes of the radiance of a pixel.
+void StorePhoto(const Color& radiance, const PhotoSettings& settings, float* pixel) {
   for (int c = 0; c < 3; ++c) {
-    const auto light = static_cast<float>(radiance[c] * photography.gain[c]);
-    pixel[c] = photography.linear ? light : SrgbFromLinear(std::clamp(light, 0.0f, 1.0f));
+    const auto light = static_cast<float>(radiance[c] * settings.gain[c]);
+    pixel[c] = settings.linear ? light : SrgbFromLinear(std::clamp(light, 0.0f, 1.0f));
   }
 }
 
-// The part of a pixel in which rays meet something. Colour is straight: where a pixel is met in
-// part, the light is that of the part.
-double Coverage(const Scene& scene, const Camera& camera,
-                const Eigen::Isometry3d& world_from_camera, int x, int y, int samples_per_pixel,
-                unsigned seed) {
+// Alpha of a pixel: the fraction of its rays that hit something.
+double Alpha(const Scene& scene, const Camera& camera, const Eigen::Isometry3d& world_from_camera,
+             int x, int y, int samples_per_pixel, unsigned seed) {
   const Vector2d shift(UnitFromHash(Hash(x, y, 0, seed)), UnitFromHash(Hash(x, y, 1, seed)));
-  int met = 0;
+  int hits = 0;
   for (int i = 0; i < samples_per_pixel; ++i) {
-    const Vector2d pixel = Vector2d(x, y) + SpreadPoint(i, shift);
-    if (Trace(scene, RayThrough(camera, world_from_camera, pixel))) ++met;
+    const Vector2d pixel = Vector2d(x, y) + PointInPixel(i, shift);
+    if (Trace(scene, RayThroughPixel(camera, world_from_camera, pixel))) ++hits;
   }
-  return static_cast<double>(met) / samples_per_pixel;
+  return static_cast<double>(hits) / samples_per_pixel;
 }
 
-// Whether somebody is to be seen in a pixel or in one beside it.
-bool Passes(const std::vector<Object>& passers_by, const Scene& scene, const Camera& camera,
-            const Eigen::Isometry3d& world_from_camera, int x, int y) {
+// Whether a passer-by is visible in a pixel or within half a pixel of it.
+bool ShowsPasserBy(const std::vector<Object>& passers_by, const Scene& scene, const Camera& camera,
+                   const Eigen::Isometry3d& world_from_camera, int x, int y) {
   for (const double dy : {-0.5, 0.5, 1.5}) {
     for (const double dx : {-0.5, 0.5, 1.5}) {
       const Vector2d pixel(std::clamp(x + dx, 0.0, static_cast<double>(camera.width)),
                            std::clamp(y + dy, 0.0, static_cast<double>(camera.height)));
-      const Ray ray = RayThrough(camera, world_from_camera, pixel);
-      for (const Object& passer_by : passers_by) {
-        const auto crossing = Intersect(passer_by.shape, ray);
-        if (!crossing) continue;
-        const auto hit = Trace(scene, ray);
-        if (!hit || crossing->distance < hit->distance) return true;
-      }
+      const Ray ray = RayThroughPixel(camera, world_from_camera, pixel);
+      const auto passer_by = FirstHit(passers_by, ray);
+      if (!passer_by) continue;
+      const auto behind = Trace(scene, ray);
+      if (!behind || passer_by->distance < behind->distance) return true;
     }
   }
   return false;
@@ -101,35 +80,36 @@ bool Passes(const std::vector<Object>& passers_by, const Scene& scene, const Cam
 
 View RenderView(const Scene& scene, const Camera& camera,
                 const Eigen::Isometry3d& world_from_camera, int samples_per_pixel, unsigned seed,
-                const Photography& photography) {
+                const PhotoSettings& settings) {
   const int width = camera.width;
   const int height = camera.height;
-  View view{Image(width, height, photography.alpha ? 4 : 3,
-                  photography.linear ? ColorEncoding::kLinear : ColorEncoding::kSrgb),
+  View view{Image(width, height, settings.alpha ? 4 : 3,
+                  settings.linear ? ColorEncoding::kLinear : ColorEncoding::kSrgb),
             std::nullopt, Image(width, height, 1, ColorEncoding::kLinear),
             Image(width, height, 3, ColorEncoding::kLinear),
             Image(width, height, 3, ColorEncoding::kLinear)};
-  if (photography.mask) view.mask = Image(width, height, 1);
-  Scene photographed = scene;
-  photographed.objects.insert(photographed.objects.end(), photography.passers_by.begin(),
-                              photography.passers_by.end());
+  if (settings.mask) view.mask = Image(width, height, 1);
+  Scene with_passers_by = scene;
+  with_passers_by.objects.insert(with_passers_by.objects.end(), settings.passers_by.begin(),
+                                 settings.passers_by.end());
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       Color light =
-          PixelRadiance(photographed, camera, world_from_camera, x, y, samples_per_pixel, seed);
-      if (photography.alpha) {
+          PixelRadiance(with_passers_by, camera, world_from_camera, x, y, samples_per_pixel, seed);
+      if (settings.alpha) {
         const double alpha =
-            Coverage(photographed, camera, world_from_camera, x, y, samples_per_pixel, seed);
-        if (alpha > 0) light /= alpha;
+            Alpha(with_passers_by, camera, world_from_camera, x, y, samples_per_pixel, seed);
+        if (alpha > 0) light /= alpha;  // colour is straight, not premultiplied
         view.photo.At(x, y)[3] = static_cast<float>(alpha);
       }
-      StorePhoto(light, photography, view.photo.At(x, y));
+      StorePhoto(light, settings, view.photo.At(x, y));
       if (view.mask) {
-        const bool passes = Passes(photography.passers_by, scene, camera, world_from_camera, x, y);
-        *view.mask->At(x, y) = passes ? 0.0f : 1.0f;
+        const bool hidden =
+            ShowsPasserBy(settings.passers_by, scene, camera, world_from_camera, x, y);
+        *view.mask->At(x, y) = hidden ? 0.0f : 1.0f;
       }
       const Vector2d center(x + 0.5, y + 0.5);
-      const auto hit = Trace(scene, RayThrough(camera, world_from_camera, center));
+      const auto hit = Trace(scene, RayThroughPixel(camera, world_from_camera, center));
       if (!hit) continue;
       *view.depth.At(x, y) = static_cast<float>(hit->distance);
       Store(hit->normal_in_world, view.normal.At(x, y));
@@ -150,7 +130,7 @@ void RenderViews(const Scene& scene, const PosedImages& posed, const SampleOptio
     View view =
         RenderView(scene, posed.cameras[image.camera], image.world_from_camera,
                    options.samples_per_pixel, Hash(i, 0, 0, options.seed),
-                   PhotographyOf(options.occasion, i, options.seed, image.world_from_camera));
+                   PhotoSettingsFor(options.scenario, i, options.seed, image.world_from_camera));
     const std::lock_guard lock(consuming);
     consume(i, std::move(view));
   });
@@ -160,9 +140,9 @@ Capture MakeCapture(const SampleOptions& options) {
   Capture capture;
   capture.posed = CameraRings(options);
   capture.views.resize(capture.posed.images.size());
-  RenderViews(SceneOf(options.occasion), capture.posed, options,
+  RenderViews(SceneFor(options.scenario), capture.posed, options,
               [&](int i, View view) { capture.views[i] = std::move(view); });
   return capture;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

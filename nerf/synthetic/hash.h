@@ -2,9 +2,13 @@
 
 #include <cstdint>
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
-// Scrambles the bits of a word, so that neighbouring inputs give unrelated outputs.
+// Hashes of 32 bits for the textures and for all that is random about a generated capture. They
+// stay beside the generator of nerf/base/random.h because every texture and camera, and so every
+// pixel of the captures, is defined by them.
+
+// Scrambles the bits of a word, so that similar inputs give unrelated outputs.
 // Source: Wellons 2018, "Prospecting for Hash Functions" (lowbias32).
 constexpr std::uint32_t Hash(std::uint32_t x) {
   x ^= x >> 16;
@@ -15,7 +19,7 @@ constexpr std::uint32_t Hash(std::uint32_t x) {
   return x;
 }
 
-// One hash for a cell of an integer lattice.
+// The hash of a cell of an integer lattice.
 constexpr std::uint32_t Hash(int x, int y, int z, std::uint32_t seed) {
   return Hash((static_cast<std::uint32_t>(x) * 0x8da6b343U) ^
               (static_cast<std::uint32_t>(y) * 0xd8163841U) ^
@@ -25,4 +29,4 @@ constexpr std::uint32_t Hash(int x, int y, int z, std::uint32_t seed) {
 // A hash as a number in [0, 1).
 constexpr double UnitFromHash(std::uint32_t hash) { return hash * 0x1p-32; }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

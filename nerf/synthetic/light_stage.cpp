@@ -18,30 +18,32 @@
 #include "nerf/material/merl.h"
 #include "nerf/output/camera_path.h"
 #include "nerf/scene/camera.h"
+#include "nerf/synthetic/check_range.h"
 
-namespace nerf::appearance {
+namespace nerf::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-constexpr double kRadius = 0.33;           // of a ball, scene units
-constexpr double kMillimetersAcross = 12;  // of the marble ball: small, so that light comes through
-constexpr int kPlaces = 4;                 // in a pixel
-constexpr int kPathsOfBounces = 16;        // in each place, under one light
+constexpr double kRadius = 0.33;  // of a ball, scene units
+constexpr double kMillimetersAcross =
+    12;                                // of the marble ball: small, so that light passes through
+constexpr int kPlaces = 4;             // in a pixel
+constexpr int kPathsWithBounces = 16;  // in each place, under one light
 
-// The file by which a folder is known as a capture of ours.
+// A file that marks a folder as a light-stage capture that may be replaced.
 constexpr const char* kMark = "light_stage.txt";
 constexpr const char* kMarkText =
     "A capture of nerf sample --light-stage: the next one here replaces its images and lights.\n";
 
 Surface Ball(double x, std::shared_ptr<const Brdf> brdf) {
-  return {sample::Sphere{{x, kRadius, 0}, kRadius}, std::move(brdf)};
+  return {Sphere{{x, kRadius, 0}, kRadius}, std::move(brdf)};
 }
 
 Surface MarbleBall(double x) {
-  const sample::Sphere sphere{{x, kRadius, 0}, kRadius};
-  const Medium marble = InUnits(Marble(), 2 * kRadius / kMillimetersAcross);
+  const Sphere sphere{{x, kRadius, 0}, kRadius};
+  const Medium marble = InUnits(MarbleMedium(), 2 * kRadius / kMillimetersAcross);
   Surface ball{sphere, nullptr};
   ball.subsurface = std::make_shared<SubsurfaceSphere>(sphere, marble);
   return ball;
@@ -49,29 +51,25 @@ Surface MarbleBall(double x) {
 
 std::string ImageName(int light) { return fmt::format("light_{:04d}.exr", light); }
 
-// A folder that holds files of somebody's must not be mixed with ours: ours are those beside the
-// mark that WriteLightStage leaves before anything else, so that a capture that was stopped is
-// known as well.
-void RefuseForeignContent(const fs::path& folder) {
+// Protects folders with files that are not from here: throws unless the folder is new, empty, or an
+// earlier capture. WriteLightStage writes the mark first, so that an interrupted capture is
+// recognized, too.
+void CheckIsLightStage(const fs::path& folder) {
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) {
     throw InputError("{} is a file: choose an empty or a new folder", folder.string());
   }
   if (!fs::exists(folder / kMark) && !fs::is_empty(folder)) {
-    throw InputError("{} holds {}, and no light-stage capture: choose an empty or a new folder",
-                     folder.string(), fs::directory_iterator(folder)->path().filename().string());
+    throw InputError(
+        "{} contains {}, but is not a light-stage capture: choose an empty or a new folder",
+        folder.string(), fs::directory_iterator(folder)->path().filename().string());
   }
-  static const std::regex ours(R"(light_\d{4}\.exr)");
+  static const std::regex image_name(R"(light_\d{4}\.exr)");
   for (const fs::path& file : ImageFilesIn(folder)) {
-    if (std::regex_match(file.filename().string(), ours)) continue;
-    throw InputError("{} is no part of a light-stage capture: choose an empty or a new folder",
+    if (std::regex_match(file.filename().string(), image_name)) continue;
+    throw InputError("{} is not part of a light-stage capture: choose an empty or a new folder",
                      file.string());
   }
-}
-
-void CheckRange(const char* flag, int value, int lowest, int highest) {
-  if (value >= lowest && value <= highest) return;
-  throw InputError("{} is {}: choose a number from {} to {}", flag, value, lowest, highest);
 }
 
 }  // namespace
@@ -84,22 +82,22 @@ void LightStageOptions::Check() const {
   terms.Check();
 }
 
-SurfaceScene LightStageSubject(std::shared_ptr<const Brdf> in_place_of_gold) {
-  if (!in_place_of_gold) {
-    in_place_of_gold = std::make_shared<Conductor>(Color(1.00, 0.77, 0.34), 0.25);
+SurfaceScene LightStageSubject(std::shared_ptr<const Brdf> third_ball) {
+  if (!third_ball) {
+    third_ball = std::make_shared<Conductor>(Color(1.00, 0.77, 0.34), 0.25);
   }
   SurfaceScene scene;
-  scene.surfaces = {{sample::Box{{0, -0.05, 0}, {1.9, 0.05, 0.9}},
-                     std::make_shared<Lambert>(Color(0.42, 0.36, 0.30))},
-                    Ball(-1.12, std::make_shared<Lambert>(Color(0.30, 0.52, 0.42))),
-                    Ball(-0.37, std::make_shared<CoatedDiffuse>(Color(0.55, 0.06, 0.05), 1.5, 0.2)),
-                    Ball(0.37, std::move(in_place_of_gold)),
-                    MarbleBall(1.12)};
+  scene.surfaces = {
+      {Box{{0, -0.05, 0}, {1.9, 0.05, 0.9}}, std::make_shared<Lambert>(Color(0.42, 0.36, 0.30))},
+      Ball(-1.12, std::make_shared<Lambert>(Color(0.30, 0.52, 0.42))),
+      Ball(-0.37, std::make_shared<CoatedDiffuse>(Color(0.55, 0.06, 0.05), 1.5, 0.2)),
+      Ball(0.37, std::move(third_ball)),
+      MarbleBall(1.12)};
   return scene;
 }
 
 StageCamera LightStageCamera(int width, int height) {
-  // As wide a view whatever the proportions of the picture.
+  // The horizontal angle is the same for every aspect ratio.
   const double half_width = std::tan(18.0 / 180 * std::numbers::pi);
   const double vertical_fov = 2 * std::atan(half_width * height / width);
   return {PinholeFromFov(width, height, vertical_fov),
@@ -110,27 +108,26 @@ std::vector<DirectionalLight> LightStageLights(int count) {
   std::vector<DirectionalLight> lights;
   for (int i = 0; i < count; ++i) {
     const Vector3d d = FibonacciDirection(i, count);
-    lights.push_back({Vector3d(d.x(), d.z(), -d.y())});  // the lattice's axis upright
+    lights.push_back({Vector3d(d.x(), d.z(), -d.y())});  // the axis of the lattice is y
   }
   return lights;
 }
 
-Image PhotographUnder(SurfaceScene& subject, const DirectionalLight& light,
-                      const StageCamera& camera, const TransportTerms& terms) {
+Image RenderUnder(SurfaceScene& subject, const DirectionalLight& light, const StageCamera& camera,
+                  const TransportTerms& terms) {
   subject.directional_lights = {light};
   subject.environment = nullptr;
   RenderSettings settings;
   settings.places = kPlaces;
-  settings.paths_per_place = terms.bounces > 0 ? kPathsOfBounces : 1;
-  // Other random numbers under each light, so that the noise of bounces averages out.
+  settings.paths_per_place = terms.bounces > 0 ? kPathsWithBounces : 1;
+  // A different seed for each light, so that the noise of the bounces averages out.
   settings.seed = Mix64(std::bit_cast<std::uint64_t>(light.to_light.y()));
   return RenderScene(subject, terms, camera.camera, camera.world_from_camera, settings).color;
 }
 
-SceneRendering PhotographUnder(SurfaceScene& subject,
-                               std::shared_ptr<const EnvironmentMap> environment,
-                               const StageCamera& camera, int paths, const TransportTerms& terms,
-                               const std::function<bool()>& keep_on) {
+SceneRendering RenderUnder(SurfaceScene& subject, std::shared_ptr<const EnvironmentMap> environment,
+                           const StageCamera& camera, int paths, const TransportTerms& terms,
+                           const std::function<bool()>& keep_on) {
   subject.directional_lights.clear();
   subject.environment = std::move(environment);
   RenderSettings settings;
@@ -149,7 +146,7 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   }
   std::shared_ptr<const Brdf> measured;
   if (!options.merl.empty()) measured = std::make_shared<MerlBrdf>(MerlBrdf::Read(options.merl));
-  RefuseForeignContent(folder);
+  CheckIsLightStage(folder);
   MakeOutputFolder(folder);
   WriteFileAtomically(folder / kMark, kMarkText);
   RemoveAll(folder / "lights.txt");
@@ -161,19 +158,19 @@ bool WriteLightStage(const fs::path& folder, const LightStageOptions& options,
   if (environment) {
     MakeOutputFolder(folder / "truth");
     const SceneRendering direct =
-        PhotographUnder(subject, environment, camera, options.paths, options.terms, keep_on);
+        RenderUnder(subject, environment, camera, options.paths, options.terms, keep_on);
     if (!direct.finished) return false;
     WriteImage(folder / "truth" / "direct.exr", direct.color);
   }
-  ProgressLine progress("photographing", options.lights);
+  ProgressLine progress("rendering", options.lights);
   for (int i = 0; i < options.lights; ++i) {
     if (!keep_on()) return false;
     progress.Update(i, ImageName(i));
-    WriteImage(folder / ImageName(i), PhotographUnder(subject, lights[static_cast<std::size_t>(i)],
-                                                      camera, options.terms));
+    WriteImage(folder / ImageName(i),
+               RenderUnder(subject, lights[static_cast<std::size_t>(i)], camera, options.terms));
   }
   WriteLights(folder / "lights.txt", lights);
   return true;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf::synthetic

@@ -2,31 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-namespace nerf::sample {
+#include "nerf/material/microfacet.h"
+
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
-
-// Rays that leave a surface start this far along their way, so that rounding does not make them
-// meet the surface they left; scene units.
-constexpr double kSkip = 1e-6;
-
-Color SchlickFresnel(const Color& at_normal, double cosine) {
-  const double m = 1 - std::clamp(cosine, 0.0, 1.0);
-  return at_normal + (Color::Ones() - at_normal) * (m * m * m * m * m);
-}
 
 Vector3d Mirrored(const Vector3d& direction, const Vector3d& normal) {
   return direction - 2 * direction.dot(normal) * normal;
 }
 
-std::optional<Hit> TraceDome(const Dome& dome, const Ray& ray) {
-  const auto crossing = Intersect(Sphere{Vector3d::Zero(), dome.radius}, ray, kSkip);
+std::optional<SceneHit> TraceDome(const Dome& dome, const Ray& ray) {
+  const auto crossing = Intersect(Sphere{Vector3d::Zero(), dome.radius}, ray, kMinHitDistance);
   if (!crossing) return std::nullopt;
-  Hit hit;
+  SceneHit hit;
   hit.distance = crossing->distance;
   hit.x_in_world = ray.origin_in_world + hit.distance * ray.direction_in_world;
   hit.normal_in_world = -crossing->normal_in_world;
@@ -35,18 +27,19 @@ std::optional<Hit> TraceDome(const Dome& dome, const Ray& ray) {
   return hit;
 }
 
-// The sun as a highlight of a perfect reflector; 0 in shadow.
-Color Highlight(const Scene& scene, const Ray& ray, const Hit& hit, bool in_sun) {
+// The highlight of the sun on a perfect reflector; 0 in shadow.
+Color Highlight(const Scene& scene, const Ray& ray, const SceneHit& hit, bool in_sun) {
   if (!in_sun) return Color::Zero();
   const Vector3d mirrored = Mirrored(ray.direction_in_world, hit.normal_in_world);
   const double n = hit.material->highlight_exponent;
-  const double cosine = std::max(0.0, mirrored.dot(scene.sun.direction_to_sun));
+  const double cosine = std::max(0.0, mirrored.dot(scene.sun.to_light));
   const double lobe = std::pow(cosine, n) * (n + 2) / (2 * std::numbers::pi);
-  return scene.sun.irradiance * lobe * hit.normal_in_world.dot(scene.sun.direction_to_sun);
+  return scene.sun.irradiance * lobe * hit.normal_in_world.dot(scene.sun.to_light);
 }
 
-// The light of the coat: what it mirrors, and the sun.
-Color CoatRadiance(const Scene& scene, const Ray& ray, const Hit& hit, bool in_sun, int bounces) {
+// What the coat reflects: the mirrored scene, and the highlight of the sun.
+Color CoatRadiance(const Scene& scene, const Ray& ray, const SceneHit& hit, bool in_sun,
+                   int bounces) {
   const Ray mirrored{hit.x_in_world, Mirrored(ray.direction_in_world, hit.normal_in_world)};
   Color radiance = Highlight(scene, ray, hit, in_sun);
   if (bounces > 0) radiance += Radiance(scene, mirrored, bounces - 1);
@@ -55,40 +48,24 @@ Color CoatRadiance(const Scene& scene, const Ray& ray, const Hit& hit, bool in_s
 
 }  // namespace
 
-std::optional<Hit> Trace(const Scene& scene, const Ray& ray) {
-  const Object* nearest = nullptr;
-  Intersection best{std::numeric_limits<double>::infinity(), Vector3d::Zero()};
-  for (const Object& object : scene.objects) {
-    const auto crossing = Intersect(object.shape, ray, kSkip);
-    if (crossing && crossing->distance < best.distance) {
-      best = *crossing;
-      nearest = &object;
-    }
-  }
-  // Nothing stands outside the dome, so whatever is met inside it is met first.
-  if (nearest == nullptr) {
-    return scene.dome ? TraceDome(*scene.dome, ray) : std::nullopt;
-  }
-  Hit hit;
-  hit.distance = best.distance;
-  hit.x_in_world = ray.origin_in_world + best.distance * ray.direction_in_world;
-  const bool from_outside = best.normal_in_world.dot(ray.direction_in_world) <= 0;
-  hit.normal_in_world = from_outside ? best.normal_in_world : -best.normal_in_world;
-  hit.albedo = Evaluate(nearest->material.albedo, ShapeFromWorld(nearest->shape, hit.x_in_world));
-  hit.material = &nearest->material;
-  return hit;
+std::optional<SceneHit> Trace(const Scene& scene, const Ray& ray) {
+  const auto nearest = FirstHit(scene.objects, ray);
+  // All objects are inside the dome, so a hit on an object is closer than one on the dome.
+  if (!nearest) return scene.dome ? TraceDome(*scene.dome, ray) : std::nullopt;
+  const Object& object = *nearest->item;
+  return SceneHit{
+      nearest->distance, nearest->x_in_world, nearest->normal_in_world,
+      Evaluate(object.material.albedo, ShapeFromWorld(object.shape, nearest->x_in_world)),
+      &object.material};
 }
 
 bool SunReaches(const Scene& scene, const Vector3d& x_in_world, const Vector3d& normal_in_world) {
-  if (normal_in_world.dot(scene.sun.direction_to_sun) <= 0) return false;
-  const Ray to_sun{x_in_world, scene.sun.direction_to_sun};
-  return std::none_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
-    return Intersect(object.shape, to_sun, kSkip).has_value();
-  });
+  if (normal_in_world.dot(scene.sun.to_light) <= 0) return false;
+  return !IsBlocked(scene.objects, {x_in_world, scene.sun.to_light});
 }
 
 Color Radiance(const Scene& scene, const Ray& ray, int bounces) {
-  const std::optional<Hit> hit = Trace(scene, ray);
+  const std::optional<SceneHit> hit = Trace(scene, ray);
   if (!hit) return Color::Zero();
   if (hit->material == nullptr) return hit->albedo;
 
@@ -97,19 +74,18 @@ Color Radiance(const Scene& scene, const Ray& ray, int bounces) {
   Color light = scene.ambient.below + (scene.ambient.above - scene.ambient.below) * up;
   const bool in_sun = SunReaches(scene, hit->x_in_world, normal);
   if (in_sun) {
-    light += scene.sun.irradiance * normal.dot(scene.sun.direction_to_sun) / std::numbers::pi;
+    light += scene.sun.irradiance * normal.dot(scene.sun.to_light) / std::numbers::pi;
   }
   const Color& gloss = hit->material->gloss;
-  Color base = hit->albedo.cwiseProduct(light);
+  Color base = hit->albedo * light;
   if (!gloss.isZero(0)) {
-    base = (Color::Ones() - gloss).cwiseProduct(base) +
-           gloss.cwiseProduct(Highlight(scene, ray, *hit, in_sun));
+    base = (1 - gloss) * base + gloss * Highlight(scene, ray, *hit, in_sun);
   }
   if (hit->material->mirror.isZero(0)) return base;
 
   const Color F = SchlickFresnel(hit->material->mirror, -normal.dot(ray.direction_in_world));
   const Color coat = CoatRadiance(scene, ray, *hit, in_sun, bounces);
-  return (Color::Ones() - F).cwiseProduct(base) + F.cwiseProduct(coat);
+  return (1 - F) * base + F * coat;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -11,12 +11,12 @@
 #include "nerf/image/image_io.h"
 #include "nerf/synthetic/camera_rings.h"
 #include "nerf/synthetic/capture.h"
+#include "nerf/synthetic/perturbed_poses.h"
 #include "nerf/synthetic/sparse_points.h"
-#include "nerf/synthetic/wrong_poses.h"
 #include "sfm/colmap_text_writer.h"
 #include "sfm/transforms_json.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,8 +30,8 @@ std::string MapName(const std::string& photo, const std::string& map) {
   return fs::path(photo).stem().string() + "." + map + ".exr";
 }
 
-// Whether a file carries a name that WriteSample gives, or that a writer of ours gives to a file it
-// has not finished: what an interrupted run leaves behind must not stand in the way of the next.
+// Whether a file has a name that WriteSample uses, or that our writers use for unfinished files: an
+// interrupted run must not block the next one.
 bool IsOurs(const std::string& name) {
   static const std::regex ours(
       R"(view_\d{3}\.(png|exr|depth\.exr|normal\.exr|albedo\.exr))"
@@ -47,31 +47,33 @@ std::vector<fs::path> FilesIn(const fs::path& folder) {
   return files;
 }
 
-// A folder that holds photographs of somebody's must not be mixed with ours.
-void RefuseForeignContent(const fs::path& folder) {
+// Protects folders with files that are not from here: throws unless the folder is new, empty, or an
+// earlier sample.
+void CheckIsSample(const fs::path& folder) {
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) {
     throw InputError("{} is a file: choose an empty or a new folder", folder.string());
   }
   if (!fs::is_empty(folder) && !fs::is_directory(folder / "truth")) {
-    throw InputError("{} holds files that are no sample: choose an empty or a new folder",
+    throw InputError("{} contains files, but is not a sample: choose an empty or a new folder",
                      folder.string());
   }
   for (const char* part : kParts) {
     for (const fs::path& file : FilesIn(folder / part)) {
       const std::string name = file.filename().string();
       if (fs::is_directory(file) ? name == kSparse : IsOurs(name)) continue;
-      throw InputError("{} is no part of a sample: choose an empty or a new folder", file.string());
+      throw InputError("{} is not part of a sample: choose an empty or a new folder",
+                       file.string());
     }
   }
 }
 
-// Views of an earlier, longer sample would be taken for views of this one.
-void RemoveWhatIsLeftOver(const fs::path& folder, const PosedImages& posed, Occasion occasion) {
-  if (occasion != Occasion::kMasks) fs::remove_all(folder / "masks");
+// Removes the files of an earlier sample that this one does not replace.
+void RemoveStaleFiles(const fs::path& folder, const PosedImages& posed, Scenario scenario) {
+  if (scenario != Scenario::kMasks) fs::remove_all(folder / "masks");
   std::set<std::string> wanted = {"transforms.json", kSparse, "cameras.txt", "images.txt",
                                   "points3D.txt"};
-  if (occasion == Occasion::kPoses) wanted.insert(kTruePoses);
+  if (scenario == Scenario::kPoseRefinement) wanted.insert(kTruePoses);
   for (const auto& image : posed.images) {
     wanted.insert(image.name);
     for (const char* map : kMap) wanted.insert(MapName(image.name, map));
@@ -99,25 +101,25 @@ void WriteSample(const fs::path& folder, const SampleOptions& options) {
   PosedImages posed = CameraRings(options);
   for (auto& image : posed.images) image.path = folder / "images" / image.name;
   try {
-    RefuseForeignContent(folder);
-    // `truth` comes first: it is the mark by which a folder is known as a sample.
+    CheckIsSample(folder);
+    // `truth` is created first: it marks a folder as a sample.
     fs::create_directories(folder / "truth" / "sparse");
     fs::create_directories(folder / "images");
-    if (options.occasion == Occasion::kMasks) fs::create_directories(folder / "masks");
-    RemoveWhatIsLeftOver(folder, posed, options.occasion);
+    if (options.scenario == Scenario::kMasks) fs::create_directories(folder / "masks");
+    RemoveStaleFiles(folder, posed, options.scenario);
   } catch (const fs::filesystem_error& e) {
-    throw InputError("{} cannot be written ({}): choose a folder that is yours", folder.string(),
+    throw InputError("{} cannot be written ({}): choose another folder", folder.string(),
                      e.code().message());
   }
-  const Scene scene = SceneOf(options.occasion);
+  const Scene scene = SceneFor(options.scenario);
   posed.points = SparsePoints(scene, posed, options);
-  PosedImages handed_over = posed;
-  if (options.occasion == Occasion::kPoses) {
+  PosedImages published = posed;
+  if (options.scenario == Scenario::kPoseRefinement) {
     sfm::WriteTransformsJson(posed, folder / "truth" / kTruePoses);
-    handed_over = WithWrongPoses(posed, options.seed);
+    published = WithPerturbedPoses(posed, options.seed);
   }
-  sfm::WriteTransformsJson(handed_over, folder / "truth" / "transforms.json");
-  sfm::WriteColmapText(handed_over, folder / "truth" / "sparse");
+  sfm::WriteTransformsJson(published, folder / "truth" / "transforms.json");
+  sfm::WriteColmapText(published, folder / "truth" / "sparse");
   ProgressLine progress("rendering", options.views);
   progress.Update(0);
   int done = 0;
@@ -127,4 +129,4 @@ void WriteSample(const fs::path& folder, const SampleOptions& options) {
   });
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -1,18 +1,8 @@
 #include "nerf/synthetic/sample_options.h"
 
-#include <string_view>
+#include "nerf/synthetic/check_range.h"
 
-#include "nerf/base/input_error.h"
-
-namespace nerf::sample {
-namespace {
-
-void CheckRange(std::string_view flag, int value, int lowest, int highest) {
-  if (value >= lowest && value <= highest) return;
-  throw InputError("{} is {}: choose a number from {} to {}", flag, value, lowest, highest);
-}
-
-}  // namespace
+namespace nerf::synthetic {
 
 void SampleOptions::Check() const {
   CheckRange("--views", views, 2, 1000);
@@ -22,4 +12,4 @@ void SampleOptions::Check() const {
   CheckRange("--threads", threads, 0, 1024);
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

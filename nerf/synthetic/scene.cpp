@@ -1,12 +1,12 @@
 #include "nerf/synthetic/scene.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSlab =
-    0.08;  // thickness of the slab on which everything stands; its top is z = 0
+// Thickness of the slab on which the objects stand; its top is z = 0.
+constexpr double kSlab = 0.08;
 
 Object Standing(double x, double y, double radius, const Material& material) {
   return {Sphere{{x, y, radius}, radius}, material};
@@ -28,7 +28,7 @@ Material Slab() {
   return {.albedo = terrazzo};
 }
 
-// Soft on purpose: far away and seen at a slant, detail would be finer than a pixel.
+// Without fine detail, which would be smaller than a pixel far away and at grazing angles.
 Material Sand() {
   return {.albedo = Marble{.ramp = {ColorFromSrgbHex(0xc4aa7a), ColorFromSrgbHex(0xcfb78a),
                                     ColorFromSrgbHex(0xd8c399), ColorFromSrgbHex(0xe2d0ab)},
@@ -100,11 +100,11 @@ Scene BuiltInScene() {
       Standing(0.08, -0.85, 0.17, VioletBall()),
       Standing(0.38, -0.25, 0.36, Gold()),
   };
-  scene.sun = {.direction_to_sun = Vector3d(0.55, -0.45, 0.85).normalized(),
+  scene.sun = {.to_light = Vector3d(0.55, -0.45, 0.85).normalized(),
                .irradiance = Color(2.15, 2.0, 1.75)};
   scene.ambient = {.above = Color(0.31, 0.34, 0.39), .below = Color(0.20, 0.19, 0.17)};
   scene.dome = Dome{8, CloudySky()};
   return scene;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -4,18 +4,19 @@
 #include <optional>
 #include <vector>
 
-#include "nerf/geometry/shapes.h"
+#include "nerf/geometry/shape_list.h"
+#include "nerf/light/lights.h"
 #include "nerf/synthetic/texture.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
-// What a surface does with light: a diffuse (Lambert) base under a coat that reflects.
+// A diffuse (Lambert) base under a mirroring coat.
 struct Material {
   Texture albedo;                   // of the base
   Color mirror = Color::Zero();     // reflectance of the coat at normal incidence; 0: no coat
-  double highlight_exponent = 400;  // of the Phong lobe in which coat and gloss show the sun
-  Color gloss = Color::Zero();      // part of the light that the base reflects not evenly but in
-                                    // that lobe: rough, so that it shows the sun and nothing else
+  double highlight_exponent = 400;  // of the Phong lobe in which coat and gloss reflect the sun
+  Color gloss = Color::Zero();      // fraction of the light that the base reflects in that lobe
+                                    // instead of diffusely; only the sun is reflected so
 };
 
 struct Object {
@@ -23,37 +24,30 @@ struct Object {
   Material material;
 };
 
-// Light from infinitely far away: parallel rays, hard shadows.
-struct Sun {
-  Eigen::Vector3d direction_to_sun = Eigen::Vector3d::UnitZ();  // unit
-  Color irradiance = Color::Zero();                             // on a surface that faces the sun
-};
-
-// Light that reaches a surface wherever it is: `above` where it faces up, `below` where it faces
-// down, a mixture between. Radiance; a surface of albedo a that faces up reflects a * above.
+// Ambient radiance, the same everywhere: `above` on surfaces that face up, `below` on those that
+// face down, interpolated between. A surface of albedo a that faces up reflects a * above.
 struct Ambient {
   Color above = Color::Zero();
   Color below = Color::Zero();
 };
 
-// A luminous sphere about the origin that encloses everything. It lights nothing and casts no
-// shadow; it is what the camera and the mirrors see where nothing else is.
+// A glowing sphere about the origin that encloses everything: the background of camera and mirrors.
+// It lights nothing and casts no shadow.
 struct Dome {
   double radius = 8;
   Texture radiance;  // of the direction from the origin
 };
 
-// World: z up, units about metres.
+// World: z up, units about metres. See ray_tracer.h for the shading.
 struct Scene {
   std::vector<Object> objects;
-  Sun sun;
+  DirectionalLight sun{Eigen::Vector3d::UnitZ(), Color::Zero()};
   Ambient ambient;
   std::optional<Dome> dome;
 };
 
-// The sample's scene: a marble ball, a mosaic tower, a block, a small ball and a golden ball that
-// mirrors them, all within about a unit of the origin, on a slab of terrazzo in the sand, in the
-// sun under a cloudy sky.
+// A marble ball, a mosaic tower, a block, a small ball and a mirroring golden ball, all within
+// about a unit of the origin, on a slab of terrazzo in the sand, in the sun under a cloudy sky.
 Scene BuiltInScene();
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -6,12 +6,12 @@
 #include "nerf/synthetic/sample_options.h"
 #include "nerf/synthetic/scene.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 
-// What structure from motion would find in a sample's photographs, without finding it: points on
-// surfaces, each with the photographs that see it, and pixels that are a third of a pixel wrong. No
-// point of a passer-by, for no two photographs show the same one. Colours are left black.
+// Simulates the sparse points of structure from motion: points on surfaces, each with a track of
+// the photographs that see it, at pixels with an error of a third of a pixel (standard deviation).
+// Passers-by have no points, as each is in one photograph only. Colours are black.
 std::vector<SparsePoint> SparsePoints(const Scene& scene, const PosedImages& posed,
                                       const SampleOptions& options);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -6,7 +6,7 @@
 #include "nerf/image/srgb.h"
 #include "nerf/synthetic/hash.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -24,11 +24,9 @@ Vector3i Floor(const Vector3d& x) {
 }
 
 // Scales a colour and keeps it a reflectance.
-Color Shade(const Color& color, double factor) {
-  return (color * factor).cwiseMax(0.0).cwiseMin(1.0);
-}
+Color Shade(const Color& color, double factor) { return (color * factor).max(0.0).min(1.0); }
 
-// The edge directions of a cube; four of the twelve stand twice, so that four bits choose one.
+// The edge directions of a cube; four of the twelve are listed twice, so that four bits select one.
 constexpr double kEdges[16][3] = {
     {1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
     {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {-1, 1, 0}, {0, -1, 1}, {0, -1, -1}};
@@ -50,8 +48,7 @@ Color At(const Marble& marble, const Vector3d& x) {
 }
 
 Color At(const Mosaic& mosaic, const Vector3d& x) {
-  // Half a tile of offset keeps the faces of a box, which are multiples of the tile, off the
-  // joints.
+  // The offset of half a tile keeps the faces of a box, at multiples of the tile, off the joints.
   const Vector3d p = x / mosaic.tile + Vector3d::Constant(0.5);
   const Vector3i cell = Floor(p);
   const double grain = FractalNoise(p * 2.0, 2, mosaic.seed + 1);
@@ -68,7 +65,7 @@ Vector3d PointFromHash(std::uint32_t hash) {  // in [-0.5, 0.5]^3
          Vector3d::Constant(0.5);
 }
 
-// Whether a point lies in a ball that a few random planes have broken into a shard.
+// Whether a point is in a shard: a ball cut off by a few random planes.
 bool InShard(const Vector3d& from_centre, double radius, std::uint32_t hash) {
   if (from_centre.squaredNorm() > radius * radius) return false;
   for (int plane = 0; plane < 6; ++plane) {
@@ -83,7 +80,7 @@ Color At(const Terrazzo& terrazzo, const Vector3d& x) {
   const double mottle = FractalNoise(x * (2 / terrazzo.largest), 4, terrazzo.seed);
   double size = terrazzo.largest;
   for (int level = 0; level < terrazzo.levels; ++level, size /= 2) {
-    // A chip never leaves its cell, so one cell a level is all there is to look at.
+    // A chip is inside its cell, so that one cell has to be tested for each level.
     const Vector3d p = x / size + Vector3d::Constant(0.37 * level + 0.13);
     const Vector3i cell = Floor(p);
     const std::uint32_t hash = Hash(cell.x(), cell.y(), cell.z(), terrazzo.seed + 7 + level);
@@ -143,11 +140,11 @@ double FractalNoise(const Vector3d& x, int octaves, std::uint32_t seed) {
     sum += amplitude * GradientNoise(p, seed + 101U * static_cast<std::uint32_t>(octave));
     power += amplitude * amplitude;
     amplitude *= kGain;
-    // The shift keeps the lattices of the octaves from sharing their zeros at the origin.
+    // The shift keeps the octaves from all being zero at the origin.
     p = 2 * p + Vector3d(0.37, 0.71, 0.53);
   }
   // Gradient noise has a standard deviation of about 0.26; two of them reach 1.
   return sum / std::sqrt(power) * 1.9;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

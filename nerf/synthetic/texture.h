@@ -5,17 +5,16 @@
 #include <cstdint>
 #include <variant>
 
-namespace nerf::sample {
+#include "nerf/image/color.h"
 
-// Reflectance or radiance, linear RGB with the primaries of sRGB.
-using Color = Eigen::Vector3d;
+namespace nerf::synthetic {
 
-// The linear colour of an sRGB value as people write it, e.g. 0xd9a441.
+// The linear colour of an sRGB value in hexadecimal, e.g. 0xd9a441.
 Color ColorFromSrgbHex(std::uint32_t rgb);
 
-// Solid textures: functions of a point, so they need no unwrapping of surfaces. They are built from
-// hashes of lattice cells and never repeat, so that every patch can be told from every other one:
-// what feature matching needs. Lengths are in scene units.
+// Solid textures: functions of a point in space, so that surfaces need no texture coordinates. They
+// are built from hashes of lattice cells and never repeat, so that features match unambiguously.
+// Lengths are in scene units.
 
 // The same colour everywhere.
 struct Plain {
@@ -30,7 +29,7 @@ struct Marble {
   std::uint32_t seed = 0;
 };
 
-// Cubes of one size, each with a colour and a brightness of its own, in joints of mortar.
+// Cubes of one size and various colours and brightnesses, with mortar between them.
 struct Mosaic {
   std::array<Color, 4> palette;
   Color mortar = Color::Zero();
@@ -39,16 +38,16 @@ struct Mosaic {
   std::uint32_t seed = 0;
 };
 
-// Round chips of several sizes strewn in a mottled base.
+// Chips of several sizes in a mottled base.
 struct Terrazzo {
   Color base = Color::Constant(0.5);
   std::array<Color, 4> chips;
-  double largest = 0.3;  // cell of the largest chips, scene units; each level below has half of it
+  double largest = 0.3;  // cell size of the largest chips, scene units; halved at each level
   int levels = 3;
   std::uint32_t seed = 0;
 };
 
-// A sky with clouds, to be evaluated on directions.
+// A sky with clouds, a function of the direction.
 struct Sky {
   Color zenith = Color::Constant(0.5);
   Color horizon = Color::Constant(0.5);
@@ -59,15 +58,15 @@ struct Sky {
 
 using Texture = std::variant<Plain, Marble, Mosaic, Terrazzo, Sky>;
 
-// Colour of a texture at a point, each channel in [0, 1] as long as the texture's own colours are.
+// The colour of a texture at a point; in [0, 1] if the colours of the texture are.
 Color Evaluate(const Texture& texture, const Eigen::Vector3d& x);
 
 // Gradient noise: smooth, zero at the lattice points, of wavelength about 1, within [-1, 1].
 // Source: Perlin 2002, "Improving Noise".
 double GradientNoise(const Eigen::Vector3d& x, std::uint32_t seed);
 
-// Sum of `octaves` gradient noises, each of twice the frequency and 0.6 times the amplitude of the
-// one before; scaled so that most values lie in [-1, 1].
+// The sum of `octaves` gradient noises, each with twice the frequency and 0.6 times the amplitude
+// of the previous one, scaled so that most values are in [-1, 1].
 double FractalNoise(const Eigen::Vector3d& x, int octaves, std::uint32_t seed);
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -6,10 +6,9 @@
 #include "nerf/base/input_error.h"
 #include "nerf/geometry/directions.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 using Eigen::Vector3d;
-using sample::Ray;
 
 namespace {
 
@@ -59,7 +58,7 @@ PathTracer::PathTracer(const SurfaceScene& scene, const TransportTerms& terms, s
     const Dipole& dipole = surface.subsurface->dipole();
     exitance_[&surface] = SubsurfaceSphere::Light(
         surface.subsurface, [&](int point, const Vector3d& x, const Vector3d& normal) -> Color {
-          const SurfaceHit hit{x, normal, &surface};
+          const SurfaceHit hit{&surface, 0, x, normal};
           const Vertex vertex(hit, normal);
           std::int64_t rays = 0;
           Color sum = Color::Zero();
@@ -92,12 +91,12 @@ bool PathTracer::Reaches(const Vertex& vertex, const Vector3d& direction, double
                          std::int64_t& rays) const {
   if (!terms_.shadows) return true;
   ++rays;
-  return !IsBlocked(scene_, {vertex.hit.x_in_world, direction}, distance);
+  return !IsBlocked(scene_.surfaces, {vertex.hit.x_in_world, direction}, distance);
 }
 
 // f_r L_i cos(theta) of lights, and of the environment as far as it is drawn by itself.
 Color PathTracer::LightsAt(const Vertex& vertex, UniformStream& random, std::int64_t& rays) const {
-  const Brdf& brdf = *vertex.hit.surface->brdf;
+  const Brdf& brdf = *vertex.hit.item->brdf;
   Color sum = Color::Zero();
   const auto add = [&](const Vector3d& to_light, double distance, const Color& light) {
     const Vector3d w_i = vertex.ToSurface(to_light);
@@ -132,7 +131,7 @@ Color PathTracer::Radiance(Ray ray, UniformStream& random, std::int64_t& rays) c
   for (int depth = 0;; ++depth) {
     const bool seen = depth == 0 ? terms_.emission : terms_.direct;
     ++rays;
-    const auto hit = FirstHit(scene_, ray);
+    const auto hit = FirstHit(scene_.surfaces, ray);
     if (!hit) {
       if (environment && depth == 0 && seen)
         radiance += environment->Radiance(ray.direction_in_world);
@@ -141,21 +140,21 @@ Color PathTracer::Radiance(Ray ray, UniformStream& random, std::int64_t& rays) c
       }
       return radiance;
     }
-    if (seen) radiance += throughput * hit->surface->emission;
+    if (seen) radiance += throughput * hit->item->emission;
     if (!terms_.direct || depth > terms_.bounces) return radiance;
 
     const Vertex vertex(*hit, -ray.direction_in_world);
-    if (const auto lit = exitance_.find(hit->surface); lit != exitance_.end()) {
+    if (const auto lit = exitance_.find(hit->item); lit != exitance_.end()) {
       radiance += throughput * lit->second.Radiance(hit->x_in_world, vertex.w_o.z());
     }
-    if (!hit->surface->brdf) return radiance;
+    if (!hit->item->brdf) return radiance;
     radiance += throughput * LightsAt(vertex, random, rays);
 
     // The next ray: light that the environment or an emitter sends from there, and bounces.
     const bool needs_ray =
         depth < terms_.bounces || has_emitters_ || (environment && terms_.shadows);
     if (!needs_ray && !environment) return radiance;
-    const auto sample = hit->surface->brdf->Sample(vertex.w_o, random.Next3());
+    const auto sample = hit->item->brdf->Sample(vertex.w_o, random.Next3());
     if (!sample) return radiance;
     throughput *= sample->f * (sample->w_i.z() / sample->pdf);
     brdf_pdf = sample->pdf;
@@ -167,4 +166,4 @@ Color PathTracer::Radiance(Ray ray, UniformStream& random, std::int64_t& rays) c
   }
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -7,7 +7,7 @@
 #include "nerf/transport/subsurface.h"
 #include "nerf/transport/surface_scene.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Which terms of the rendering equation are computed; one that is off costs no ray.
 //   L_o = L_e + integral of f_r L_i cos(theta) d omega      (Kajiya 1986)
@@ -49,7 +49,7 @@ class PathTracer {
 
   // One path. The mean over draws of `random` is the radiance that arrives at the ray's origin.
   //   rays  grows by the rays that were traced
-  Color Radiance(sample::Ray ray, UniformStream& random, std::int64_t& rays) const;
+  Color Radiance(Ray ray, UniformStream& random, std::int64_t& rays) const;
 
  private:
   struct Vertex;
@@ -63,4 +63,4 @@ class PathTracer {
   std::map<const Surface*, SubsurfaceSphere::Exitance> exitance_;
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

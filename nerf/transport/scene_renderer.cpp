@@ -9,29 +9,14 @@
 #include "nerf/base/parallel.h"
 #include "nerf/base/progress.h"
 #include "nerf/scene/camera.h"
+#include "nerf/transport/pixel_rays.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector2d;
 
-// The i-th of n places that fill the unit square evenly.
-// Source: Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences" (R2).
-Vector2d PlaceInPixel(int i) {
-  const double x = 0.5 + 0.7548776662466927 * i;
-  const double y = 0.5 + 0.5698402909980532 * i;
-  return {x - std::floor(x), y - std::floor(y)};
-}
-
-sample::Ray RayThrough(const Camera& camera, const Eigen::Isometry3d& world_from_camera,
-                       const Vector2d& pixel) {
-  const auto direction_in_camera = DirectionFromPixel(camera, pixel);
-  if (!direction_in_camera) {
-    throw InputError("the camera has no ray for pixel ({}, {}): choose another lens", pixel.x(),
-                     pixel.y());
-  }
-  return {world_from_camera.translation(), world_from_camera.linear() * *direction_in_camera};
-}
+const Vector2d kShift(0.5, 0.5);  // the first place is the middle of the pixel
 
 // Adds up a picture pass by pass: colours, and the spread of luminance at each place by itself, for
 // differences between places are detail and no noise.
@@ -126,11 +111,12 @@ SceneRendering RenderScene(const SurfaceScene& scene, const TransportTerms& term
       for (int x = 0; x < width; ++x) {
         const auto pixel = static_cast<std::size_t>(y) * width + x;
         for (int place = 0; place < settings.places; ++place) {
-          const Vector2d at = Vector2d(x, static_cast<double>(y)) + PlaceInPixel(place);
+          const Vector2d at = Vector2d(x, static_cast<double>(y)) + PointInPixel(place, kShift);
           UniformStream random(settings.seed, pixel,
                                static_cast<std::uint64_t>(passes) * settings.places + place);
-          sums.Add(pixel, place,
-                   tracer.Radiance(RayThrough(camera, world_from_camera, at), random, row_rays));
+          sums.Add(
+              pixel, place,
+              tracer.Radiance(RayThroughPixel(camera, world_from_camera, at), random, row_rays));
         }
       }
       rays += row_rays;
@@ -149,4 +135,4 @@ SceneRendering RenderScene(const SurfaceScene& scene, const TransportTerms& term
   return result;
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

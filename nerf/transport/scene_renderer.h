@@ -9,7 +9,7 @@
 #include "nerf/scene/posed_images.h"
 #include "nerf/transport/path_tracer.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 struct RenderSettings {
   int places = 4;            // within each pixel, the same in each pixel, 1..64
@@ -40,4 +40,4 @@ SceneRendering RenderScene(
     const Eigen::Isometry3d& world_from_camera, const RenderSettings& settings,
     const std::string& title = "", const std::function<bool()>& keep_on = [] { return true; });
 
-}  // namespace nerf::appearance
+}  // namespace nerf

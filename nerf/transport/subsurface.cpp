@@ -7,7 +7,7 @@
 #include "nerf/base/parallel.h"
 #include "nerf/geometry/directions.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -29,7 +29,7 @@ Color MeanOverOwnPatch(const Dipole& dipole, double rho) {
 
 }  // namespace
 
-SubsurfaceSphere::SubsurfaceSphere(const sample::Sphere& sphere, const Medium& medium)
+SubsurfaceSphere::SubsurfaceSphere(const Sphere& sphere, const Medium& medium)
     : sphere_(sphere), dipole_(medium), spread_(std::size_t{kPoints} * kPoints) {
   const double patch = 4 * pi * sphere.radius * sphere.radius / kPoints;
   for (int i = 0; i < kPoints; ++i) normals_.push_back(FibonacciDirection(i, kPoints));
@@ -93,4 +93,4 @@ Color SubsurfaceSphere::Exitance::Radiance(const Vector3d& x_in_world, double n_
   return At(x_in_world) * (sphere_->dipole_.Transmittance(n_dot_v) / pi);
 }
 
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -8,14 +8,14 @@
 #include "nerf/geometry/shapes.h"
 #include "nerf/material/dipole.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // Light through a translucent sphere: its irradiance at points spread evenly over it, spread by the
 // dipole, looked up anywhere in between. The dipole's plane is bent onto the sphere; distances are
 // straight. Source: Jensen and Buhler 2002, without their hierarchy: there are few points.
 class SubsurfaceSphere {
  public:
-  SubsurfaceSphere(const sample::Sphere& sphere, const Medium& medium);
+  SubsurfaceSphere(const Sphere& sphere, const Medium& medium);
 
   // Radiant exitance at the points, and how to look it up.
   class Exitance {
@@ -43,10 +43,10 @@ class SubsurfaceSphere {
   Color UniformReflectance() const;
 
  private:
-  sample::Sphere sphere_;
+  Sphere sphere_;
   Dipole dipole_;
   std::vector<Eigen::Vector3d> normals_;
   std::vector<Eigen::Array3f> spread_;  // [to][from] R_d dA
 };
 
-}  // namespace nerf::appearance
+}  // namespace nerf

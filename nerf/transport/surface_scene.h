@@ -1,20 +1,19 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "nerf/geometry/shapes.h"
+#include "nerf/geometry/shape_list.h"
 #include "nerf/light/environment_map.h"
 #include "nerf/light/lights.h"
 #include "nerf/material/brdf.h"
 #include "nerf/transport/subsurface.h"
 
-namespace nerf::appearance {
+namespace nerf {
 
 // A surface and what it does with light. Boxes and discs have two sides that are alike.
 struct Surface {
-  sample::Shape shape;
+  Shape shape;
   std::shared_ptr<const Brdf> brdf = nullptr;  // none: reflects nothing
   Color emission = Color::Zero();              // radiance, to all sides
   // Light that enters a translucent sphere, the same as `shape`, and leaves it elsewhere; none:
@@ -30,17 +29,6 @@ struct SurfaceScene {
   std::shared_ptr<const EnvironmentMap> environment;  // nullptr: darkness
 };
 
-// A point of a surface that a ray meets.
-struct SurfaceHit {
-  Eigen::Vector3d x_in_world;
-  Eigen::Vector3d normal_in_world;  // unit, on the side the ray comes from
-  const Surface* surface = nullptr;
-};
+using SurfaceHit = Hit<Surface>;
 
-// The first surface along a ray; nullopt where there is none.
-std::optional<SurfaceHit> FirstHit(const SurfaceScene& scene, const sample::Ray& ray);
-
-// Whether any surface stands within a distance along a ray.
-bool IsBlocked(const SurfaceScene& scene, const sample::Ray& ray, double distance);
-
-}  // namespace nerf::appearance
+}  // namespace nerf

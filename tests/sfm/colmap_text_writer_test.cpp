@@ -12,12 +12,12 @@ namespace {
 
 TEST(ColmapText, ComesBack) {
   const nerf::test::ScratchFolder folder;
-  nerf::sample::SampleOptions options;
+  nerf::synthetic::SampleOptions options;
   options.views = 6;
   options.width = 32;
   options.height = 24;
   options.samples_per_pixel = 1;
-  nerf::sample::WriteSample(folder.path(), options);
+  nerf::synthetic::WriteSample(folder.path(), options);
   const PosedImages posed =
       ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   ASSERT_GT(posed.points.size(), 100u);

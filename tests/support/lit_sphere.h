@@ -12,8 +12,8 @@
 namespace nerf::test {
 
 // Directions to `count` lights on a ring and a half about z, up to `degrees` off it: in no plane.
-inline std::vector<appearance::DirectionalLight> RingOfLights(int count, double degrees) {
-  std::vector<appearance::DirectionalLight> lights;
+inline std::vector<DirectionalLight> RingOfLights(int count, double degrees) {
+  std::vector<DirectionalLight> lights;
   for (int i = 0; i < count; ++i) {
     const double polar = degrees * std::numbers::pi / 180 * (i % 3 == 2 ? 0.5 : 1.0);
     const double azimuth = 2 * std::numbers::pi * i / count;
@@ -38,7 +38,7 @@ struct SpherePixel {
   std::vector<double> observations;
 };
 
-inline std::vector<SpherePixel> LitSphere(const std::vector<appearance::DirectionalLight>& lights,
+inline std::vector<SpherePixel> LitSphere(const std::vector<DirectionalLight>& lights,
                                           double albedo, const SphereFlaws& flaws = {},
                                           int radius = 40) {
   std::mt19937 random(flaws.seed);

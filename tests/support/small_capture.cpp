@@ -5,12 +5,12 @@
 namespace nerf::test {
 
 SmallCapture MakeSmallCapture(int views, int width, int height) {
-  sample::SampleOptions options;
+  synthetic::SampleOptions options;
   options.views = views;
   options.width = width;
   options.height = height;
   SmallCapture small;
-  small.capture = sample::MakeCapture(options);
+  small.capture = synthetic::MakeCapture(options);
   PosedImages& posed = small.capture.posed;
   AssignSplits(posed, DataOptions());
   small.scene.normalized_from_world = NormalizeScene(posed);

@@ -8,7 +8,7 @@ namespace nerf::test {
 
 // A capture of the built-in scene as training sees it, without files: every 8th view held out.
 struct SmallCapture {
-  sample::Capture capture;
+  synthetic::Capture capture;
   Dataset data;
   SceneFacts scene;
 };

@@ -10,7 +10,7 @@
 #include "nerf/geometry/directions.h"
 #include "tests/support/input_error_of.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -199,4 +199,4 @@ TEST(LightVoronoi, OfNoLightsIsRefused) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -2,16 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
-#include <cstring>
-#include <string>
 
-#include "nerf/base/atomic_file.h"
-#include "nerf/geometry/height_mesh.h"
-#include "tests/support/scratch_folder.h"
-
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 void Store(Image& normal, int x, int y, double nx, double ny, double nz) {
@@ -77,29 +70,5 @@ TEST(IntegrateNormals, GivesPartsThatDoNotTouchAMeanOfZeroEach) {
   EXPECT_NEAR(*height.At(7, 2), 0, 1e-4);
 }
 
-TEST(HeightMesh, HasAVertexAPixelAndTwoTrianglesASquareThatFaceTheCamera) {
-  const test::ScratchFolder scratch;
-  Image height(3, 2, 1, ColorEncoding::kLinear);
-  Image color(3, 2, 3, ColorEncoding::kLinear);
-  *height.At(2, 1) = std::nanf("");
-  WriteHeightMesh(scratch.path() / "a.ply", height, color);
-  const std::string bytes = ReadWholeFile(scratch.path() / "a.ply");
-  EXPECT_NE(bytes.find("element vertex 5\n"), std::string::npos);
-  EXPECT_NE(bytes.find("element face 2\n"), std::string::npos);
-  const std::size_t data = bytes.find("end_header\n") + 11;
-  ASSERT_EQ(bytes.size(), data + 5 * 15 + 2 * 13);
-  const auto vertex = [&](int index) {
-    Eigen::Vector3f v;
-    std::memcpy(v.data(), &bytes[data + static_cast<std::size_t>(index) * 15], 12);
-    return v;
-  };
-  for (int face = 0; face < 2; ++face) {
-    std::int32_t corner[3];
-    std::memcpy(corner, &bytes[data + 75 + static_cast<std::size_t>(face) * 13 + 1], 12);
-    const Eigen::Vector3f a = vertex(corner[0]);
-    EXPECT_GT((vertex(corner[1]) - a).cross(vertex(corner[2]) - a).z(), 0);
-  }
-}
-
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

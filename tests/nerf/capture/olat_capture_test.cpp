@@ -12,7 +12,7 @@
 #include "tests/support/lit_sphere.h"
 #include "tests/support/scratch_folder.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -191,4 +191,4 @@ TEST(OlatCapture, ThatIsNoneIsRefusedWithWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

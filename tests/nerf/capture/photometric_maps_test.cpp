@@ -9,12 +9,12 @@
 #include "nerf/capture/photometric_folder.h"
 #include "nerf/image/image_io.h"
 #include "nerf/light/light_file.h"
-#include "tests/nerf/appearance/tiny_dng.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/lit_sphere.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/tiny_dng.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -222,4 +222,4 @@ TEST(PhotometricMaps, OfTheCatForetellAPhotographThatWasLeftOut) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -10,7 +10,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/lit_sphere.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -190,4 +190,4 @@ TEST(PhotometricStereo, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

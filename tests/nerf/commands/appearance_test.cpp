@@ -33,9 +33,10 @@ TEST(LightStageFlags, AloneAreRefused) {
 }
 
 TEST(LightStageFlags, RefuseWhatTheyWouldIgnore) {
-  for (const char* flags : {"--light-stage 0", "--light-stage 3 --views 5",
-                            "--light-stage 3 --samples 4", "--light-stage 3 --seed 1",
-                            "--light-stage 3 --calls-for exposure", "--light-stage 3 --paths 8"}) {
+  for (const char* flags :
+       {"--light-stage 0", "--light-stage 3 --views 5", "--light-stage 3 --samples 4",
+        "--light-stage 3 --seed 1", "--light-stage 3 --scenario exposure",
+        "--light-stage 3 --calls-for exposure", "--light-stage 3 --paths 8"}) {
     const auto result = test::RunNerf(std::string("sample nowhere ") + flags);
     EXPECT_EQ(result.exit_status, 2) << flags;
     EXPECT_THAT(result.output, HasSubstr("--")) << flags;

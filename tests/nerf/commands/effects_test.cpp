@@ -29,10 +29,10 @@ class EffectsCommands : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::ScratchFolder;
-    for (const char* occasion : {"exposure", "masks"}) {
+    for (const char* scenario : {"exposure", "masks"}) {
       const auto made = RunNerf(
-          fmt::format("sample {} --calls-for {} --views 17 --width 64 --height 48 --samples 2",
-                      Path(occasion), occasion));
+          fmt::format("sample {} --scenario {} --views 17 --width 64 --height 48 --samples 2",
+                      Path(scenario), scenario));
       ASSERT_EQ(made.exit_status, 0) << made.output;
     }
   }
@@ -69,8 +69,9 @@ test::ScratchFolder* EffectsCommands::folder_ = nullptr;
 TEST_F(EffectsCommands, InspectPrintsAVerdictForEachEffectWithItsEvidence) {
   const auto table = RunNerf("inspect " + Path("exposure/truth/sparse"));
   EXPECT_EQ(table.exit_status, 0);
-  for (const char* effect : {"alpha", "hdr", "masks", "view", "background", "exposure", "robust",
-                             "depth", "poses", "footprint", "unbounded"}) {
+  for (const char* effect :
+       {"alpha", "hdr", "masks", "view_dependence", "background", "exposure", "robust",
+        "depth_supervision", "pose_refinement", "anti_aliasing", "unbounded"}) {
     EXPECT_THAT(table.output, HasSubstr(effect));
   }
   EXPECT_THAT(table.output, HasSubstr("stops"));
@@ -102,7 +103,7 @@ TEST_F(EffectsCommands, InspectDrawsAPictureWhereItIsToldTo) {
 TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   const auto run = RunNerf(Train("exposure", "auto", ""));
   ASSERT_EQ(run.exit_status, 0) << run.output;
-  EXPECT_THAT(run.output, HasSubstr("what the capture calls for"));
+  EXPECT_THAT(run.output, HasSubstr("effects that the capture calls for"));
   EXPECT_FALSE(Json("auto/config.json").at("effects").at("exposure").is_null());
   EXPECT_TRUE(Json("auto/config.json").at("effects").at("masks").is_null());
   EXPECT_EQ(Json("auto/effects.json").at("verdicts").size(), 12u);
@@ -126,9 +127,8 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
 // A pixel of each photograph that is a little transparent: not enough to be told by inspect, too
 // much for a background.
 TEST_F(EffectsCommands, ALittleAlphaIsNoReasonToStop) {
-  const auto made =
-      RunNerf("sample " + Path("sky") +
-              " --calls-for background --views 17 --width 64 --height 48 --samples 2");
+  const auto made = RunNerf("sample " + Path("sky") +
+                            " --scenario background --views 17 --width 64 --height 48 --samples 2");
   ASSERT_EQ(made.exit_status, 0) << made.output;
   const std::string names = RunNerf("train " + Path("sky/truth/sparse") + " -o " + Path("clear") +
                                     " --threads 2 --set train.steps=20")
@@ -154,7 +154,7 @@ TEST_F(EffectsCommands, ALittleAlphaIsNoReasonToStop) {
 }
 
 TEST_F(EffectsCommands, RefinedPosesAreToldAndWritten) {
-  const auto run = RunNerf(Train("exposure", "refined", "--effects +poses"));
+  const auto run = RunNerf(Train("exposure", "refined", "--effects +pose_refinement"));
   ASSERT_EQ(run.exit_status, 0) << run.output;
   EXPECT_THAT(run.output, HasSubstr("cameras turned by"));
   const auto frames = Json("refined/transforms.json").at("frames");
@@ -177,13 +177,14 @@ TEST_F(EffectsCommands, RefinedPosesAreToldAndWritten) {
 }
 
 TEST_F(EffectsCommands, EvalMeasuresWhatEachEffectInUseIsWorthAndCosts) {
-  const auto run = RunNerf(Train("exposure", "worth", "--effects -view,+poses"));
+  const auto run =
+      RunNerf(Train("exposure", "worth", "--effects -view_dependence,+pose_refinement"));
   ASSERT_EQ(run.exit_status, 0) << run.output;
   const std::string eval = "eval " + Path("worth") + " --effects --effects-steps ";
   const auto table = RunNerf(eval + "10");
   EXPECT_EQ(table.exit_status, 0) << table.output;
-  EXPECT_THAT(table.output, AllOf(HasSubstr("worth dB"), HasSubstr("after 10 steps"),
-                                  HasSubstr("poses: on the right halves")));
+  EXPECT_THAT(table.output, AllOf(HasSubstr("gain dB"), HasSubstr("after 10 steps"),
+                                  HasSubstr("pose_refinement: on the right halves")));
 
   const auto told = RunNerf(eval + "200 --json");
   ASSERT_EQ(told.exit_status, 0) << told.output;
@@ -193,7 +194,7 @@ TEST_F(EffectsCommands, EvalMeasuresWhatEachEffectInUseIsWorthAndCosts) {
   for (const auto& worth : json.at("effects")) {
     const std::string effect = worth.at("effect");
     measured.push_back(effect);
-    EXPECT_EQ(worth.at("on_halves"), effect == "poses");
+    EXPECT_EQ(worth.at("on_halves"), effect == "pose_refinement");
     EXPECT_GT(worth.at("seconds_a_step_with"), 0);
     // Photographs a stop apart.
     if (effect == "exposure") {
@@ -214,7 +215,7 @@ TEST_F(EffectsCommands, WhatAPersonSaysStands) {
   const auto run = RunNerf(
       Train("exposure", "asked", "--effects -exposure,+robust --set march.near_distance=0.3"));
   ASSERT_EQ(run.exit_status, 0) << run.output;
-  EXPECT_THAT(run.output, HasSubstr("as asked for"));
+  EXPECT_THAT(run.output, HasSubstr("as requested"));
   const auto effects = Json("asked/config.json").at("effects");
   EXPECT_EQ(Json("asked/config.json").at("march").at("near_distance"), 0.3);
   EXPECT_TRUE(effects.at("exposure").is_null());
@@ -223,7 +224,7 @@ TEST_F(EffectsCommands, WhatAPersonSaysStands) {
                 HasSubstr("simulates no exposures"));
 
   const auto configured = RunNerf(Train("exposure", "configured", "--effects config"));
-  EXPECT_THAT(configured.output, Not(HasSubstr("what the capture calls for")));
+  EXPECT_THAT(configured.output, Not(HasSubstr("effects that the capture calls for")));
   EXPECT_TRUE(Json("configured/config.json").at("effects").at("exposure").is_null());
   EXPECT_EQ(Json("configured/config.json").at("march").at("near_distance"), 0.05);
 
@@ -246,7 +247,7 @@ TEST_F(EffectsCommands, RefuseWhatCannotBe) {
                 AllOf(HasSubstr("+rain"), HasSubstr("exposure")));
   ExpectRefused(Train("exposure", "x", "--effects exposure"), HasSubstr("+exposure"));
   ExpectRefused(Train("exposure", "x", "--set effects.rain={}"), HasSubstr("effects.rain"));
-  ExpectRefused("sample " + Path("y") + " --calls-for rain", HasSubstr("rain"));
+  ExpectRefused("sample " + Path("y") + " --scenario rain", HasSubstr("rain"));
   EXPECT_FALSE(fs::exists(Path("x")));
 
   const std::string masks = Path("masks/masks/view_003.png");

@@ -222,11 +222,12 @@ TEST_F(TrainCommand, ATargetEndsTheRunAndSaysWhetherItWasReached) {
   };
   const auto reached = train("target", "1");
   ASSERT_EQ(reached.exit_status, 0) << reached.output;
-  EXPECT_THAT(reached.output, AllOf(HasSubstr("trained 20 steps"), HasSubstr("1 dB are reached")));
+  EXPECT_THAT(reached.output,
+              AllOf(HasSubstr("trained 20 steps"), HasSubstr("target of 1 dB reached")));
   const auto missed = train("missed", "99");
   ASSERT_EQ(missed.exit_status, 0) << missed.output;
   EXPECT_THAT(missed.output,
-              AllOf(HasSubstr("trained 60 steps"), HasSubstr("99 dB were not reached")));
+              AllOf(HasSubstr("trained 60 steps"), HasSubstr("target of 99 dB not reached")));
   const auto blind = RunNerf(Arguments("blind") + " --target-psnr 30");  // ten photographs
   EXPECT_EQ(blind.exit_status, 2);
   EXPECT_THAT(blind.output, HasSubstr("data.validation_images"));

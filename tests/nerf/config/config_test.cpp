@@ -159,23 +159,29 @@ TEST(Config, EffectsMayBeCalledByTheNamesThatTheyHadAVersionAgo) {
   ASSERT_TRUE(config.effects.pose_refinement);
   EXPECT_EQ(config.effects.pose_refinement->rate, 0.5);
   EXPECT_TRUE(config.effects.anti_aliasing);
-  EXPECT_EQ(NamedEffects("base", {"effects.depth={}"}), (std::set<std::string>{"depth_supervision"}));
+  EXPECT_EQ(NamedEffects("base", {"effects.depth={}"}),
+            (std::set<std::string>{"depth_supervision"}));
   // As a checkpoint of that version has them.
-  const Config old = ConfigFromJson({{"effects", {{"view", nullptr}, {"depth", {{"share", 0.2}}}}}}, "test");
+  const Config old =
+      ConfigFromJson({{"effects", {{"view", nullptr}, {"depth", {{"share", 0.2}}}}}}, "test");
   EXPECT_FALSE(old.effects.view_dependence);
   EXPECT_EQ(old.effects.depth_supervision->share, 0.2);
 }
 
 TEST(Config, AValueThatIsNoEnumeratorListsThoseThereAre) {
-  EXPECT_THAT(ErrorOf("base", {"march.sampler=grid"}),
-              AllOf(HasSubstr("march.sampler"), HasSubstr("grid"), HasSubstr("auto, occupancy, proposal")));
+  EXPECT_THAT(
+      ErrorOf("base", {"march.sampler=grid"}),
+      AllOf(HasSubstr("march.sampler"), HasSubstr("grid"), HasSubstr("auto, occupancy, proposal")));
   EXPECT_THAT(ErrorOf("base", {"train.engine=gpu"}), HasSubstr("fused, libtorch"));
 }
 
 TEST(Config, EveryNumberIsHeldToItsRange) {
-  EXPECT_THAT(ErrorOf("base", {"optimizer.beta1=1"}), HasSubstr("optimizer.beta1 is 1; use 0 to 0.9999"));
-  EXPECT_THAT(ErrorOf("base", {"proposal.encoding.levels=0"}), HasSubstr("proposal.encoding.levels"));
-  EXPECT_THAT(ErrorOf("base", {"effects.robust={\"scale\": 0}"}), HasSubstr("effects.robust.scale"));
+  EXPECT_THAT(ErrorOf("base", {"optimizer.beta1=1"}),
+              HasSubstr("optimizer.beta1 is 1; use 0 to 0.9999"));
+  EXPECT_THAT(ErrorOf("base", {"proposal.encoding.levels=0"}),
+              HasSubstr("proposal.encoding.levels"));
+  EXPECT_THAT(ErrorOf("base", {"effects.robust={\"scale\": 0}"}),
+              HasSubstr("effects.robust.scale"));
   EXPECT_THAT(ErrorOf("base", {"data.test_every=1"}), HasSubstr("0 or 2 or more"));
   EXPECT_THAT(ErrorOf("base", {"encoding.base_resolution=4096"}), HasSubstr("max_resolution"));
   EXPECT_THAT(ErrorOf("base", {"march.near_distance=200"}), HasSubstr("near < far"));

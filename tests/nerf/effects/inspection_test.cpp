@@ -19,12 +19,12 @@
 namespace nerf {
 namespace {
 
-using sample::Occasion;
+using synthetic::Scenario;
 
-sample::SampleOptions Small(Occasion occasion) {
-  sample::SampleOptions options;
-  options.occasion = occasion;
-  options.views = sample::UsualViews(occasion);
+synthetic::SampleOptions Small(Scenario scenario) {
+  synthetic::SampleOptions options;
+  options.scenario = scenario;
+  options.views = synthetic::DefaultViewCount(scenario);
   options.width = 240;
   options.height = 180;
   options.samples_per_pixel = 4;
@@ -33,16 +33,16 @@ sample::SampleOptions Small(Occasion occasion) {
 }
 
 struct Case {
-  Occasion occasion;
+  Scenario scenario;
   std::string name, calls_for;  // the effects, sorted
 };
 
-class EachOccasion : public testing::TestWithParam<Case> {};
+class EachScenario : public testing::TestWithParam<Case> {};
 
 // Of the effects that Inspect judges, those that a sample calls for and no other.
-TEST_P(EachOccasion, IsJudgedRightly) {
+TEST_P(EachScenario, IsJudgedRightly) {
   const test::ScratchFolder folder;
-  sample::WriteSample(folder.path(), Small(GetParam().occasion));
+  synthetic::WriteSample(folder.path(), Small(GetParam().scenario));
   PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   sfm::FindMasks(posed);
@@ -61,25 +61,25 @@ TEST_P(EachOccasion, IsJudgedRightly) {
 std::string NameOf(const testing::TestParamInfo<Case>& of) { return of.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(
-    Inspect, EachOccasion,
-    testing::Values(Case{Occasion::kNothing, "Nothing", "unbounded"},
-                    Case{Occasion::kView, "View", "unbounded,view"},
-                    Case{Occasion::kBackground, "Background", "background"},
-                    Case{Occasion::kUnbounded, "Unbounded", "unbounded"},
-                    Case{Occasion::kExposure, "Exposure", "exposure,unbounded"},
-                    Case{Occasion::kMasks, "Masks", "masks,unbounded"},
-                    Case{Occasion::kAlpha, "Alpha", "alpha"},
-                    Case{Occasion::kRobust, "Robust", "robust,unbounded"},
-                    Case{Occasion::kDepth, "Depth", "depth,unbounded"},
-                    Case{Occasion::kHdr, "Hdr", "hdr,unbounded"},
-                    Case{Occasion::kPoses, "Poses", "poses,unbounded"},
-                    Case{Occasion::kFootprint, "Footprint", "alpha,footprint"}),
+    Inspect, EachScenario,
+    testing::Values(Case{Scenario::kNothing, "Nothing", "unbounded"},
+                    Case{Scenario::kViewDependence, "View", "unbounded,view_dependence"},
+                    Case{Scenario::kBackground, "Background", "background"},
+                    Case{Scenario::kUnbounded, "Unbounded", "unbounded"},
+                    Case{Scenario::kExposure, "Exposure", "exposure,unbounded"},
+                    Case{Scenario::kMasks, "Masks", "masks,unbounded"},
+                    Case{Scenario::kAlpha, "Alpha", "alpha"},
+                    Case{Scenario::kRobust, "Robust", "robust,unbounded"},
+                    Case{Scenario::kDepthSupervision, "Depth", "depth_supervision,unbounded"},
+                    Case{Scenario::kHdr, "Hdr", "hdr,unbounded"},
+                    Case{Scenario::kPoseRefinement, "Poses", "pose_refinement,unbounded"},
+                    Case{Scenario::kAntiAliasing, "Footprint", "alpha,anti_aliasing"}),
     NameOf);
 
 TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
   const test::ScratchFolder folder;
-  const sample::SampleOptions options = Small(Occasion::kExposure);
-  sample::WriteSample(folder.path(), options);
+  const synthetic::SampleOptions options = Small(Scenario::kExposure);
+  synthetic::WriteSample(folder.path(), options);
   const PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   const Inspection inspection = Inspect(posed);
@@ -87,9 +87,9 @@ TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
   std::vector<double> truth;
   double mean = 0;
   for (int i = 0; i < static_cast<int>(posed.images.size()); ++i) {
-    const auto gain =
-        sample::PhotographyOf(options.occasion, i, options.seed, posed.images[i].world_from_camera)
-            .gain;
+    const auto gain = synthetic::PhotoSettingsFor(options.scenario, i, options.seed,
+                                                  posed.images[i].world_from_camera)
+                          .gain;
     truth.push_back(gain.array().log().mean() / std::log(2.0));
     mean += truth.back() / static_cast<double>(posed.images.size());
   }
@@ -100,7 +100,7 @@ TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
 
 TEST(Inspect, RaysBeginBeforeWhateverACameraSees) {
   const test::ScratchFolder folder;
-  sample::WriteSample(folder.path(), Small(Occasion::kNothing));
+  synthetic::WriteSample(folder.path(), Small(Scenario::kNothing));
   const PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   double nearest = 1e9;
@@ -123,7 +123,7 @@ TEST(Inspect, RaysBeginBeforeWhateverACameraSees) {
 
 TEST(Inspect, WithoutALearnedBackgroundContractedSpaceHoldsWhatIsFar) {
   const test::ScratchFolder folder;
-  sample::WriteSample(folder.path(), Small(Occasion::kBackground));
+  synthetic::WriteSample(folder.path(), Small(Scenario::kBackground));
   const PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   for (const bool learned : {true, false}) {
@@ -138,13 +138,13 @@ TEST(Inspect, WithoutALearnedBackgroundContractedSpaceHoldsWhatIsFar) {
 
 TEST(Inspect, WithoutSparsePointsOnlyFactsAreDecided) {
   const test::ScratchFolder folder;
-  sample::WriteSample(folder.path(), Small(Occasion::kAlpha));
+  synthetic::WriteSample(folder.path(), Small(Scenario::kAlpha));
   const Inspection inspection =
       Inspect(sfm::ReadTransformsJson(folder.path() / "truth" / "transforms.json"));
   std::map<std::string, bool> decided;
   for (const Verdict& verdict : inspection.verdicts) decided[verdict.effect] = verdict.decided;
   EXPECT_TRUE(decided.at("alpha"));
-  EXPECT_FALSE(decided.at("view"));
+  EXPECT_FALSE(decided.at("view_dependence"));
   EXPECT_FALSE(decided.at("exposure"));
 }
 

@@ -200,13 +200,13 @@ TEST(PoseRefinement, OfALensCountForPhotographsThatAreHeldOutToo) {
 // A sample whose poses are wrong, as they should be and as training refines them.
 TEST(PoseRefinement, AreFoundByTraining) {
   const test::ScratchFolder folder;
-  sample::SampleOptions options;
-  options.occasion = sample::Occasion::kPoses;
+  synthetic::SampleOptions options;
+  options.scenario = synthetic::Scenario::kPoseRefinement;
   options.views = 24;
   options.width = 120;
   options.height = 90;
   options.samples_per_pixel = 4;
-  sample::WriteSample(folder.path(), options);
+  synthetic::WriteSample(folder.path(), options);
   const PosedImages truth = sfm::ReadTransformsJson(folder.path() / "truth/poses.json");
   PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth/sparse", folder.path() / "images");

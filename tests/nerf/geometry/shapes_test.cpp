@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace nerf::sample {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -144,4 +144,4 @@ TEST(ShapeFromWorld, MovesToTheCentreAndTurnsIntoTheAxesOfABox) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf

@@ -8,10 +8,10 @@
 
 #include "nerf/image/image_io.h"
 #include "nerf/image/srgb.h"
-#include "tests/nerf/appearance/tiny_dng.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/tiny_dng.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -77,4 +77,4 @@ TEST(LinearImage, OfACamerasRawFileIsWhatItsSensorCounted) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

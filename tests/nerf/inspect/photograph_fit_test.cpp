@@ -42,13 +42,5 @@ TEST(PhotographFit, IsNotBentByWhatPassesBy) {
   }
 }
 
-TEST(Quantile, IsThatOfSortedValues) {
-  std::vector<double> values = {5, 1, 4, 2, 3};
-  EXPECT_EQ(Quantile(values, 0), 1);
-  EXPECT_EQ(Quantile(values, 0.5), 3);
-  EXPECT_EQ(Quantile(values, 1), 5);
-  EXPECT_EQ(Quantile({}, 0.5), 0);
-}
-
 }  // namespace
 }  // namespace nerf

@@ -40,13 +40,13 @@ int NeighbourOf(const PosedImages& posed, int point) {
 
 TEST(TrackColors, APointThatTheNeighbourSeesIsMissed) {
   const test::ScratchFolder folder;
-  sample::SampleOptions options;
-  options.occasion = sample::Occasion::kNothing;
+  synthetic::SampleOptions options;
+  options.scenario = synthetic::Scenario::kNothing;
   options.views = 30;
   options.width = 120;
   options.height = 90;
   options.samples_per_pixel = 1;
-  sample::WriteSample(folder.path(), options);
+  synthetic::WriteSample(folder.path(), options);
   PosedImages posed =
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   EXPECT_LT(UnseenBy(posed, kPhotograph), 3u);

@@ -16,7 +16,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -211,4 +211,4 @@ TEST(ShIrradiance, OfTheCapturedEnvironmentsOfTheWorldIsCloseToTheIntegral) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -8,7 +8,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using ::testing::AllOf;
@@ -58,4 +58,4 @@ TEST(LightFile, ThatIsWrongIsNamedWithItsLine) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

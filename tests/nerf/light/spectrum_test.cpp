@@ -10,7 +10,7 @@
 #include "nerf/light/units.h"
 #include "tests/support/input_error_of.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using ::testing::HasSubstr;
@@ -102,4 +102,4 @@ TEST(Units, OfGreenPhotonsAndLamps) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -10,7 +10,7 @@
 #include "nerf/material/merl.h"
 #include "tests/support/chi_square.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -273,4 +273,4 @@ TEST(Lambert, ReflectsItsAlbedo) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

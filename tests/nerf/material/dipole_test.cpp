@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using std::numbers::pi;
@@ -23,7 +23,7 @@ Color Integrated(const Dipole& dipole) {
 }
 
 TEST(Dipole, SumsToItsTotalDiffuseReflectance) {
-  for (const Medium& medium : {Marble(), WholeMilk(), Skin()}) {
+  for (const Medium& medium : {MarbleMedium(), WholeMilkMedium(), SkinMedium()}) {
     const Dipole dipole(medium);
     EXPECT_LT((Integrated(dipole) - dipole.TotalDiffuseReflectance()).abs().maxCoeff(), 1e-4);
   }
@@ -36,9 +36,9 @@ TEST(Dipole, ReflectsWhatWasPublished) {
     EXPECT_LT((reflectance - published).abs().maxCoeff(), 0.02)
         << reflectance.transpose() << " instead of " << published.transpose();
   };
-  expect(Marble(), {0.83, 0.79, 0.75});
-  expect(WholeMilk(), {0.91, 0.88, 0.76});
-  expect(Skin(), {0.44, 0.22, 0.13});
+  expect(MarbleMedium(), {0.83, 0.79, 0.75});
+  expect(WholeMilkMedium(), {0.91, 0.88, 0.76});
+  expect(SkinMedium(), {0.44, 0.22, 0.13});
 }
 
 // The formula of the paper written down once more, in one channel and long double.
@@ -51,7 +51,7 @@ TEST(Dipole, IsThePublishedProfile) {
   const long double Fdr = -1.440L / (eta * eta) + 0.710L / eta + 0.668L + 0.0636L * eta;
   const long double zr = 1 / st;
   const long double zv = zr + 4 * (1 + Fdr) / (1 - Fdr) / (3 * st);
-  const Dipole dipole(Marble());
+  const Dipole dipole(MarbleMedium());
   for (const double r : {0.0, 0.1, 1.0, 5.0, 20.0}) {
     const long double dr = std::sqrt(r * r + zr * zr);
     const long double dv = std::sqrt(r * r + zv * zv);
@@ -63,8 +63,8 @@ TEST(Dipole, IsThePublishedProfile) {
 }
 
 TEST(Dipole, IsTheSameInAnyUnitOfLength) {
-  const Dipole in_millimeters(Marble());
-  const Dipole in_meters(InUnits(Marble(), 1e-3));
+  const Dipole in_millimeters(MarbleMedium());
+  const Dipole in_meters(InUnits(MarbleMedium(), 1e-3));
   EXPECT_TRUE(in_meters.TotalDiffuseReflectance().isApprox(in_millimeters.TotalDiffuseReflectance(),
                                                            1e-12));
   EXPECT_TRUE((in_meters.DiffuseReflectance(2e-3) * 1e-6)
@@ -72,10 +72,10 @@ TEST(Dipole, IsTheSameInAnyUnitOfLength) {
 }
 
 TEST(Dipole, ThatAbsorbsNothingReturnsAllLight) {
-  Medium clear = Marble();
+  Medium clear = MarbleMedium();
   clear.absorption.setZero();
   EXPECT_NEAR(Dipole(clear).TotalDiffuseReflectance().x(), 1, 1e-12);
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -14,7 +14,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace nerf::appearance {
+namespace nerf {
 namespace {
 
 using Eigen::Vector3d;
@@ -97,4 +97,4 @@ TEST(MerlBrdf, ThatIsCutShortOrOfOtherSizesIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace nerf::appearance
+}  // namespace nerf

@@ -26,13 +26,13 @@ struct FewPhotographs {
   Dataset data;
 
   FewPhotographs() {
-    sample::SampleOptions options;
-    options.occasion = sample::Occasion::kDepth;
+    synthetic::SampleOptions options;
+    options.scenario = synthetic::Scenario::kDepthSupervision;
     options.views = 10;
     options.width = 96;
     options.height = 72;
     options.samples_per_pixel = 4;
-    sample::WriteSample(folder.path(), options);
+    synthetic::WriteSample(folder.path(), options);
     sparse = sfm::ReadColmapModel(folder.path() / "truth/sparse", folder.path() / "images");
     for (std::size_t i = 0; i < sparse.images.size(); ++i) {
       sparse.images[i].split = i % 8 == 0 ? Split::kValidation : Split::kTrain;

@@ -20,12 +20,12 @@ using testing::HasSubstr;
 using test::never_stop;
 
 PreparedScene SmallSample(const test::ScratchFolder& folder, int views) {
-  sample::SampleOptions options;
+  synthetic::SampleOptions options;
   options.views = views;
   options.width = 32;
   options.height = 24;
   options.samples_per_pixel = 1;
-  sample::WriteSample(folder.path() / "sample", options);
+  synthetic::WriteSample(folder.path() / "sample", options);
   const Config config = LoadConfig("balanced", {});
   PreparedScene scene = PrepareScene(folder.path() / "sample/truth/transforms.json", folder.path(),
                                      config.data, 0, IgnoreEvents);

@@ -11,7 +11,7 @@
 #include "nerf/scene/camera.h"
 #include "tests/support/input_error_of.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Matrix3d;
@@ -109,4 +109,4 @@ TEST(SampleOptions, OutOfRangeAreErrorsThatNameTheFlag) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -9,7 +9,7 @@
 #include "nerf/scene/camera.h"
 #include "nerf/synthetic/ray_tracer.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector2d;
@@ -165,4 +165,4 @@ TEST(RenderViews, PassOnWhatTheConsumerThrows) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

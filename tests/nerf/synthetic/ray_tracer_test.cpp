@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
 
 void ExpectColor(const Color& actual, const Color& expected, double tolerance = 1e-12) {
-  EXPECT_LT((actual - expected).norm(), tolerance)
+  EXPECT_LT((actual - expected).matrix().norm(), tolerance)
       << actual.transpose() << " instead of " << expected.transpose();
 }
 
@@ -33,9 +33,8 @@ TEST(Radiance, OfALambertSphereIsAlbedoTimesIrradianceTimesCosineOverPi) {
   const Scene scene = MattSphere();
   for (const double x : {0.0, 0.3, 0.8}) {
     const Vector3d normal(x, 0, std::sqrt(1 - x * x));
-    const double cosine = normal.dot(scene.sun.direction_to_sun);
-    ExpectColor(Radiance(scene, Down(x, 0), 0),
-                kAlbedo.cwiseProduct(scene.sun.irradiance) * (cosine / kPi));
+    const double cosine = normal.dot(scene.sun.to_light);
+    ExpectColor(Radiance(scene, Down(x, 0), 0), kAlbedo * scene.sun.irradiance * (cosine / kPi));
   }
 }
 
@@ -65,7 +64,7 @@ TEST(Radiance, InShadowIsThatOfTheAmbientAndBesideItThatOfTheSunToo) {
   const double middle = -std::sqrt(3.0);
   ExpectColor(Radiance(scene, Down(middle, 0), 0), kAlbedo * 0.2);
   const Color lit = Radiance(scene, Down(middle, 1.01), 0);  // the shadow is 2 wide there
-  ExpectColor(lit, kAlbedo * 0.2 + kAlbedo.cwiseProduct(scene.sun.irradiance) * (0.5 / kPi));
+  ExpectColor(lit, kAlbedo * 0.2 + kAlbedo * scene.sun.irradiance * (0.5 / kPi));
   ExpectColor(Radiance(scene, Down(middle, 0.99), 0), kAlbedo * 0.2);
 }
 
@@ -197,4 +196,4 @@ TEST(BuiltInScene, EnclosesEveryRayFromWithin) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

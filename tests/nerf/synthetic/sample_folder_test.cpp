@@ -15,7 +15,7 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 namespace fs = std::filesystem;
@@ -161,4 +161,4 @@ TEST(SampleFolder, IsNotMadeForOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

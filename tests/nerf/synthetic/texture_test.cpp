@@ -7,7 +7,7 @@
 #include "nerf/synthetic/hash.h"
 #include "nerf/synthetic/scene.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Vector3d;
@@ -70,7 +70,7 @@ TEST(Texture, TheSlabDoesNotRepeat) {
     double sum = 0;
     for (int i = 0; i < 100; ++i) {
       const Vector3d x(0.05 * (i % 10), 0.05 * (i / 10), 0);
-      sum += (Evaluate(slab, x) - Evaluate(slab, x + shift)).norm();
+      sum += (Evaluate(slab, x) - Evaluate(slab, x + shift)).matrix().norm();
     }
     return sum / 100;
   };
@@ -92,4 +92,4 @@ TEST(ColorFromSrgbHex, IsLinear) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

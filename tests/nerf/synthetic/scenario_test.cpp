@@ -1,4 +1,4 @@
-#include "nerf/synthetic/occasion.h"
+#include "nerf/synthetic/scenario.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,12 +18,12 @@
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
-SampleOptions Tiny(Occasion occasion) {
+SampleOptions Tiny(Scenario scenario) {
   SampleOptions options;
-  options.occasion = occasion;
+  options.scenario = scenario;
   options.views = 9;
   options.width = 48;
   options.height = 36;
@@ -31,15 +31,15 @@ SampleOptions Tiny(Occasion occasion) {
   return options;
 }
 
-TEST(Occasion, HasANameThatAPersonUses) {
-  EXPECT_EQ(OccasionFromName("exposure"), Occasion::kExposure);
-  EXPECT_THAT(test::InputErrorOf([] { OccasionFromName("rain"); }),
+TEST(Scenario, HasANameThatAPersonUses) {
+  EXPECT_EQ(ScenarioFromName("exposure"), Scenario::kExposure);
+  EXPECT_THAT(test::InputErrorOf([] { ScenarioFromName("rain"); }),
               testing::AllOf(testing::HasSubstr("rain"), testing::HasSubstr("exposure")));
 }
 
-TEST(Occasion, OfNothingShowsMattThingsAndSomethingEverywhere) {
-  const Capture capture = MakeCapture(Tiny(Occasion::kNothing));
-  for (const Object& object : SceneOf(Occasion::kNothing).objects) {
+TEST(Scenario, OfNothingShowsMattThingsAndSomethingEverywhere) {
+  const Capture capture = MakeCapture(Tiny(Scenario::kNothing));
+  for (const Object& object : SceneFor(Scenario::kNothing).objects) {
     EXPECT_TRUE(object.material.mirror.isZero());
     EXPECT_TRUE(object.material.gloss.isZero());
   }
@@ -48,17 +48,18 @@ TEST(Occasion, OfNothingShowsMattThingsAndSomethingEverywhere) {
   }
 }
 
-TEST(Occasion, OfDepthHasFewPhotographs) {
-  EXPECT_LT(UsualViews(Occasion::kDepth), UsualViews(Occasion::kNothing) / 3);
+TEST(Scenario, OfDepthHasFewPhotographs) {
+  EXPECT_LT(DefaultViewCount(Scenario::kDepthSupervision),
+            DefaultViewCount(Scenario::kNothing) / 3);
 }
 
-TEST(Occasion, OfExposureChangesLightAndNothingElse) {
-  const SampleOptions plain = Tiny(Occasion::kNothing), drift = Tiny(Occasion::kExposure);
+TEST(Scenario, OfExposureChangesLightAndNothingElse) {
+  const SampleOptions plain = Tiny(Scenario::kNothing), drift = Tiny(Scenario::kExposure);
   const Capture a = MakeCapture(plain), b = MakeCapture(drift);
   for (std::size_t i = 0; i < a.views.size(); ++i) {
     EXPECT_EQ(a.views[i].depth.pixels, b.views[i].depth.pixels);
-    const Color gain = PhotographyOf(Occasion::kExposure, static_cast<int>(i), drift.seed,
-                                     a.posed.images[i].world_from_camera)
+    const Color gain = PhotoSettingsFor(Scenario::kExposure, static_cast<int>(i), drift.seed,
+                                        a.posed.images[i].world_from_camera)
                            .gain;
     const Image one = ToLinear(a.views[i].photo), other = ToLinear(b.views[i].photo);
     for (std::size_t k = 0; k < one.pixels.size(); ++k) {
@@ -68,9 +69,9 @@ TEST(Occasion, OfExposureChangesLightAndNothingElse) {
   }
 }
 
-TEST(Occasion, OfRobustLeavesEveryEighthPhotographToJudgeBy) {
-  const Capture plain = MakeCapture(Tiny(Occasion::kNothing));
-  const Capture passed = MakeCapture(Tiny(Occasion::kRobust));
+TEST(Scenario, OfRobustLeavesEveryEighthPhotographToJudgeBy) {
+  const Capture plain = MakeCapture(Tiny(Scenario::kNothing));
+  const Capture passed = MakeCapture(Tiny(Scenario::kRobust));
   int changed = 0;
   for (std::size_t i = 0; i < plain.views.size(); ++i) {
     const bool same = plain.views[i].photo.pixels == passed.views[i].photo.pixels;
@@ -85,8 +86,8 @@ TEST(Occasion, OfRobustLeavesEveryEighthPhotographToJudgeBy) {
   EXPECT_GE(changed, 6);
 }
 
-TEST(Occasion, OfMasksHidesATwelfthOfEachPhotographBehindTwoOrThree) {
-  SampleOptions options = Tiny(Occasion::kMasks);
+TEST(Scenario, OfMasksHidesATwelfthOfEachPhotographBehindTwoOrThree) {
+  SampleOptions options = Tiny(Scenario::kMasks);
   options.views = 36;
   options.width = 160;
   options.height = 120;
@@ -94,10 +95,10 @@ TEST(Occasion, OfMasksHidesATwelfthOfEachPhotographBehindTwoOrThree) {
   const Capture capture = MakeCapture(options);
   double hidden = 0, pixels = 0;
   for (int i = 0; i < options.views; ++i) {
-    const auto people =
-        PhotographyOf(options.occasion, i, options.seed, capture.posed.images[i].world_from_camera)
-            .passers_by.size();
-    if (IsToJudgeBy(i)) {
+    const auto people = PhotoSettingsFor(options.scenario, i, options.seed,
+                                         capture.posed.images[i].world_from_camera)
+                            .passers_by.size();
+    if (IsHeldOut(i)) {
       EXPECT_EQ(people, 0u);
       continue;
     }
@@ -109,18 +110,18 @@ TEST(Occasion, OfMasksHidesATwelfthOfEachPhotographBehindTwoOrThree) {
   EXPECT_LT(hidden / pixels, 0.11);
 }
 
-TEST(Occasion, OfViewIsGlossyAndMirrorsNothing) {
+TEST(Scenario, OfViewIsGlossyAndMirrorsNothing) {
   int glossy = 0;
-  for (const Object& object : SceneOf(Occasion::kView).objects) {
+  for (const Object& object : SceneFor(Scenario::kViewDependence).objects) {
     EXPECT_TRUE(object.material.mirror.isZero());
     glossy += !object.material.gloss.isZero();
   }
   EXPECT_GE(glossy, 5);
 }
 
-TEST(Occasion, OfMasksMarksEveryPixelInWhichSomebodyIs) {
-  const Capture plain = MakeCapture(Tiny(Occasion::kNothing));
-  const Capture masked = MakeCapture(Tiny(Occasion::kMasks));
+TEST(Scenario, OfMasksMarksEveryPixelInWhichSomebodyIs) {
+  const Capture plain = MakeCapture(Tiny(Scenario::kNothing));
+  const Capture masked = MakeCapture(Tiny(Scenario::kMasks));
   int hidden = 0;
   for (std::size_t i = 0; i < plain.views.size(); ++i) {
     ASSERT_TRUE(masked.views[i].mask);
@@ -139,8 +140,8 @@ TEST(Occasion, OfMasksMarksEveryPixelInWhichSomebodyIs) {
   EXPECT_GT(hidden, 100);
 }
 
-TEST(Occasion, OfFootprintIsNearAndFarInTurn) {
-  SampleOptions options = Tiny(Occasion::kFootprint);
+TEST(Scenario, OfFootprintIsNearAndFarInTurn) {
+  SampleOptions options = Tiny(Scenario::kAntiAliasing);
   options.views = 36;
   options.samples_per_pixel = 1;
   const Capture capture = MakeCapture(options);
@@ -149,17 +150,17 @@ TEST(Occasion, OfFootprintIsNearAndFarInTurn) {
     const double distance = capture.posed.images[i].world_from_camera.translation().norm();
     EXPECT_NEAR(distance, distance > 6 ? 12 : 3, 0.06 * distance);
     far += distance > 6;
-    to_judge_by += IsToJudgeBy(i);
-    far_to_judge_by += IsToJudgeBy(i) && distance > 6;
+    to_judge_by += IsHeldOut(i);
+    far_to_judge_by += IsHeldOut(i) && distance > 6;
   }
   EXPECT_NEAR(far, options.views / 2, 2);
   EXPECT_GE(far_to_judge_by, 2);
   EXPECT_GE(to_judge_by - far_to_judge_by, 2);
 }
 
-TEST(Occasion, OfAlphaIsTransparentWhereNothingIsMet) {
-  const Capture capture = MakeCapture(Tiny(Occasion::kAlpha));
-  const Capture plain = MakeCapture(Tiny(Occasion::kNothing));
+TEST(Scenario, OfAlphaIsTransparentWhereNothingIsMet) {
+  const Capture capture = MakeCapture(Tiny(Scenario::kAlpha));
+  const Capture plain = MakeCapture(Tiny(Scenario::kNothing));
   int clear = 0, opaque = 0, missed = 0;
   for (std::size_t i = 0; i < capture.views.size(); ++i) {
     const Image& photo = capture.views[i].photo;
@@ -184,16 +185,16 @@ TEST(Occasion, OfAlphaIsTransparentWhereNothingIsMet) {
   EXPECT_LT(missed, clear / 100);  // at edges, where only a pixel's middle meets nothing
 }
 
-TEST(Occasion, OfHdrIsBrighterThanWhite) {
-  const Capture capture = MakeCapture(Tiny(Occasion::kHdr));
+TEST(Scenario, OfHdrIsBrighterThanWhite) {
+  const Capture capture = MakeCapture(Tiny(Scenario::kHdr));
   EXPECT_EQ(capture.views[0].photo.encoding, ColorEncoding::kLinear);
   EXPECT_GT(*std::ranges::max_element(capture.views[0].photo.pixels), 2);
 }
 
 TEST(SparsePoints, AreSeenWhereTheirTracksSay) {
-  const SampleOptions options = Tiny(Occasion::kBuiltIn);
+  const SampleOptions options = Tiny(Scenario::kBuiltIn);
   const Capture capture = MakeCapture(options);
-  const auto points = SparsePoints(SceneOf(options.occasion), capture.posed, options);
+  const auto points = SparsePoints(SceneFor(options.scenario), capture.posed, options);
   ASSERT_GT(points.size(), 500u);
   for (const SparsePoint& point : points) {
     EXPECT_GE(point.track.size(), 3u);
@@ -206,13 +207,13 @@ TEST(SparsePoints, AreSeenWhereTheirTracksSay) {
 
 // Who stands behind a point does not hide it.
 TEST(SparsePoints, AreSeenWhereverTheyAreNotMaskedOut) {
-  SampleOptions options = Tiny(Occasion::kMasks);
+  SampleOptions options = Tiny(Scenario::kMasks);
   options.width = 160;
   options.height = 120;
   options.samples_per_pixel = 1;
   const Capture capture = MakeCapture(options);
   const PosedImages& posed = capture.posed;
-  const auto points = SparsePoints(SceneOf(options.occasion), posed, options);
+  const auto points = SparsePoints(SceneFor(options.scenario), posed, options);
   int seen_unmasked = 0;
   for (const SparsePoint& point : points) {
     for (const TrackElement& seen : point.track) {
@@ -224,9 +225,9 @@ TEST(SparsePoints, AreSeenWhereverTheyAreNotMaskedOut) {
     }
   }
   std::size_t sightings = 0, unhindered = 0;
-  options.occasion = Occasion::kNothing;
+  options.scenario = Scenario::kNothing;
   for (const auto& point : points) sightings += point.track.size();
-  for (const auto& point : SparsePoints(SceneOf(options.occasion), posed, options)) {
+  for (const auto& point : SparsePoints(SceneFor(options.scenario), posed, options)) {
     unhindered += point.track.size();
   }
   // Nearly all are outside of the masks, which reach a pixel further, and few are lost.
@@ -236,9 +237,9 @@ TEST(SparsePoints, AreSeenWhereverTheyAreNotMaskedOut) {
 
 TEST(WriteSample, WithMasksWritesThemAndTakesThemAwayAgain) {
   const test::ScratchFolder folder;
-  WriteSample(folder.path(), Tiny(Occasion::kMasks));
+  WriteSample(folder.path(), Tiny(Scenario::kMasks));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "masks" / "view_001.png"));
-  WriteSample(folder.path(), Tiny(Occasion::kHdr));
+  WriteSample(folder.path(), Tiny(Scenario::kHdr));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "masks"));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "images" / "view_001.exr"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "images" / "view_001.png"));
@@ -246,7 +247,7 @@ TEST(WriteSample, WithMasksWritesThemAndTakesThemAwayAgain) {
 
 TEST(WriteSample, WithWrongPosesKeepsTheTrueOnesApart) {
   const test::ScratchFolder folder;
-  const SampleOptions options = Tiny(Occasion::kPoses);
+  const SampleOptions options = Tiny(Scenario::kPoseRefinement);
   WriteSample(folder.path(), options);
   const PosedImages truth = CameraRings(options);
   const auto right = sfm::ReadTransformsJson(folder.path() / "truth" / "poses.json").images;
@@ -257,12 +258,12 @@ TEST(WriteSample, WithWrongPosesKeepsTheTrueOnesApart) {
   for (std::size_t i = 0; i < truth.images.size(); ++i) {
     const Eigen::Isometry3d& pose = truth.images[i].world_from_camera;
     EXPECT_TRUE(right[i].world_from_camera.isApprox(pose, 1e-12));
-    EXPECT_EQ(wrong[i].world_from_camera.isApprox(pose, 1e-12), IsToJudgeBy(static_cast<int>(i)));
+    EXPECT_EQ(wrong[i].world_from_camera.isApprox(pose, 1e-12), IsHeldOut(static_cast<int>(i)));
     EXPECT_TRUE(sparse[i].world_from_camera.isApprox(wrong[i].world_from_camera, 1e-9));
   }
-  WriteSample(folder.path(), Tiny(Occasion::kNothing));
+  WriteSample(folder.path(), Tiny(Scenario::kNothing));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "truth" / "poses.json"));
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -1,4 +1,4 @@
-#include "nerf/synthetic/wrong_poses.h"
+#include "nerf/synthetic/perturbed_poses.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "nerf/synthetic/camera_rings.h"
-#include "nerf/synthetic/occasion.h"
+#include "nerf/synthetic/scenario.h"
 #include "nerf/synthetic/sparse_points.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -27,16 +27,16 @@ double SquaredError(const Isometry3d& truth, const Isometry3d& wrong) {
          turn.angle() * turn.angle() / (0.4 * kDegree * 0.4 * kDegree);
 }
 
-class WrongPoses : public testing::Test {
+class PerturbedPoses : public testing::Test {
  protected:
   const PosedImages truth_ = CameraRings({});
-  const PosedImages wrong_ = WithWrongPoses(truth_, 3);
+  const PosedImages wrong_ = WithPerturbedPoses(truth_, 3);
 
   // Of all cameras with wrong poses, after something was done to the wrong ones.
   double Total(const std::function<Isometry3d(const Isometry3d&)>& change) const {
     double total = 0;
     for (int i = 0; i < static_cast<int>(truth_.images.size()); ++i) {
-      if (IsToJudgeBy(i)) continue;
+      if (IsHeldOut(i)) continue;
       total += SquaredError(truth_.images[i].world_from_camera,
                             change(wrong_.images[i].world_from_camera));
     }
@@ -44,12 +44,12 @@ class WrongPoses : public testing::Test {
   }
 };
 
-TEST_F(WrongPoses, AreWrongByAsMuchAsIsSaidAndNotWhereTheyJudge) {
+TEST_F(PerturbedPoses, AreWrongByAsMuchAsIsSaidAndNotWhereTheyJudge) {
   int wrong = 0;
   for (int i = 0; i < static_cast<int>(truth_.images.size()); ++i) {
     const bool same =
         truth_.images[i].world_from_camera.isApprox(wrong_.images[i].world_from_camera, 1e-15);
-    EXPECT_EQ(same, IsToJudgeBy(i)) << i;
+    EXPECT_EQ(same, IsHeldOut(i)) << i;
     if (!same) ++wrong;
   }
   // Six errors a camera, less the seven numbers of a similarity.
@@ -58,7 +58,7 @@ TEST_F(WrongPoses, AreWrongByAsMuchAsIsSaidAndNotWhereTheyJudge) {
               4 * std::sqrt(2 * expected));
 }
 
-TEST_F(WrongPoses, WouldNotBeBetterIfAllWereMovedAsOne) {
+TEST_F(PerturbedPoses, WouldNotBeBetterIfAllWereMovedAsOne) {
   const double as_it_is = Total([](const Isometry3d& pose) { return pose; });
   for (const double step : {-1e-3, 1e-3}) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -79,18 +79,18 @@ TEST_F(WrongPoses, WouldNotBeBetterIfAllWereMovedAsOne) {
   }
 }
 
-TEST_F(WrongPoses, AreOthersWithAnotherSeedAndTheSameWithTheSame) {
+TEST_F(PerturbedPoses, AreOthersWithAnotherSeedAndTheSameWithTheSame) {
   const Isometry3d one = wrong_.images[1].world_from_camera;
-  EXPECT_TRUE(WithWrongPoses(truth_, 3).images[1].world_from_camera.isApprox(one, 0));
-  EXPECT_FALSE(WithWrongPoses(truth_, 4).images[1].world_from_camera.isApprox(one, 1e-6));
+  EXPECT_TRUE(WithPerturbedPoses(truth_, 3).images[1].world_from_camera.isApprox(one, 0));
+  EXPECT_FALSE(WithPerturbedPoses(truth_, 4).images[1].world_from_camera.isApprox(one, 1e-6));
 }
 
-TEST_F(WrongPoses, ShowInTheReprojectionErrorsAndLeavePointsWhereTheyAre) {
+TEST_F(PerturbedPoses, ShowInTheReprojectionErrorsAndLeavePointsWhereTheyAre) {
   PosedImages truth = truth_;
   SampleOptions options;
-  options.occasion = Occasion::kPoses;
-  truth.points = SparsePoints(SceneOf(options.occasion), truth, options);
-  const PosedImages wrong = WithWrongPoses(truth, 3);
+  options.scenario = Scenario::kPoseRefinement;
+  truth.points = SparsePoints(SceneFor(options.scenario), truth, options);
+  const PosedImages wrong = WithPerturbedPoses(truth, 3);
   double before = 0, after = 0;
   for (std::size_t p = 0; p < truth.points.size(); ++p) {
     EXPECT_EQ(wrong.points[p].x_in_world, truth.points[p].x_in_world);
@@ -102,4 +102,4 @@ TEST_F(WrongPoses, ShowInTheReprojectionErrorsAndLeavePointsWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic

@@ -1,4 +1,4 @@
-#include "nerf/synthetic/wrong_poses.h"
+#include "nerf/synthetic/perturbed_poses.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -7,9 +7,9 @@
 
 #include "nerf/scene/camera.h"
 #include "nerf/synthetic/hash.h"
-#include "nerf/synthetic/occasion.h"
+#include "nerf/synthetic/scenario.h"
 
-namespace nerf::sample {
+namespace nerf::synthetic {
 namespace {
 
 using Eigen::Matrix3d;
@@ -29,18 +29,18 @@ Vector3d NormalPoint(int i, int view, unsigned seed) {
   return {Normal(i, view, seed), Normal(i + 1, view, seed), Normal(i + 2, view, seed)};
 }
 
-Matrix3d Cross(const Vector3d& v) {
+Matrix3d CrossMatrix(const Vector3d& v) {
   Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return m;
 }
 
-// By how much a small similarity (shift, turn, growth) of the world moves a camera, and turns it:
-// six rows, in units of the standard deviations.
-Eigen::Matrix<double, 6, 7> MovedBySimilarity(const Vector3d& center) {
+// The Jacobian of a camera's position and rotation with respect to a small similarity of the world
+// (translation, rotation, scale); rows in units of the standard deviations.
+Eigen::Matrix<double, 6, 7> SimilarityJacobian(const Vector3d& center) {
   Eigen::Matrix<double, 6, 7> rows;
-  rows << Matrix3d::Identity() / kShift, -Cross(center) / kShift, center / kShift, Matrix3d::Zero(),
-      Matrix3d::Identity() / kTurn, Vector3d::Zero();
+  rows << Matrix3d::Identity() / kShift, -CrossMatrix(center) / kShift, center / kShift,
+      Matrix3d::Zero(), Matrix3d::Identity() / kTurn, Vector3d::Zero();
   return rows;
 }
 
@@ -55,7 +55,7 @@ Eigen::Isometry3d Moved(const Eigen::Isometry3d& world_from_camera, const Vector
   return moved;
 }
 
-void MeasureReprojection(PosedImages& posed) {
+void UpdateReprojectionErrors(PosedImages& posed) {
   for (SparsePoint& point : posed.points) {
     double sum = 0;
     int count = 0;
@@ -73,30 +73,30 @@ void MeasureReprojection(PosedImages& posed) {
 
 }  // namespace
 
-PosedImages WithWrongPoses(const PosedImages& posed, unsigned seed) {
-  std::vector<int> wrong;
+PosedImages WithPerturbedPoses(const PosedImages& posed, unsigned seed) {
+  std::vector<int> perturbed;
   for (int i = 0; i < static_cast<int>(posed.images.size()); ++i) {
-    if (!IsToJudgeBy(i)) wrong.push_back(i);
+    if (!IsHeldOut(i)) perturbed.push_back(i);
   }
-  const auto rows = static_cast<Eigen::Index>(6 * wrong.size());
+  const auto rows = static_cast<Eigen::Index>(6 * perturbed.size());
   Eigen::MatrixXd similarity(rows, 7);
   Eigen::VectorXd error(rows);  // in units of the standard deviations
-  for (std::size_t k = 0; k < wrong.size(); ++k) {
+  for (std::size_t k = 0; k < perturbed.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(6 * k);
     similarity.middleRows<6>(row) =
-        MovedBySimilarity(posed.images[wrong[k]].world_from_camera.translation());
-    error.segment<3>(row) = NormalPoint(0, wrong[k], seed);
-    error.segment<3>(row + 3) = NormalPoint(3, wrong[k], seed);
+        SimilarityJacobian(posed.images[perturbed[k]].world_from_camera.translation());
+    error.segment<3>(row) = NormalPoint(0, perturbed[k], seed);
+    error.segment<3>(row + 3) = NormalPoint(3, perturbed[k], seed);
   }
   error -= similarity * similarity.completeOrthogonalDecomposition().solve(error);
   PosedImages moved = posed;
-  for (std::size_t k = 0; k < wrong.size(); ++k) {
+  for (std::size_t k = 0; k < perturbed.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(6 * k);
-    Eigen::Isometry3d& pose = moved.images[wrong[k]].world_from_camera;
+    Eigen::Isometry3d& pose = moved.images[perturbed[k]].world_from_camera;
     pose = Moved(pose, kShift * error.segment<3>(row), kTurn * error.segment<3>(row + 3));
   }
-  MeasureReprojection(moved);
+  UpdateReprojectionErrors(moved);
   return moved;
 }
 
-}  // namespace nerf::sample
+}  // namespace nerf::synthetic
