@@ -15,10 +15,10 @@ using Eigen::Vector2d;
 using Eigen::Vector2i;
 using Eigen::Vector3d;
 
-constexpr double kSmallestRadius = 5;    // pixels
-constexpr double kLeastRoundness = 0.9;  // area of the mask over that of a disc as wide
-constexpr float kHighlightShare = 0.5f;  // of the brightest pixel
-constexpr float kStandsOut = 4;          // brightest pixel over the mean of the ball
+constexpr double kMinRadius = 5;             // pixels
+constexpr double kMinRoundness = 0.9;        // area of the mask over that of a disc of its width
+constexpr float kHighlightThreshold = 0.5f;  // relative to the brightest pixel
+constexpr float kMinContrast = 4;            // brightest pixel over the mean of the ball
 
 float Brightness(const float* pixel) { return (pixel[0] + pixel[1] + pixel[2]) / 3; }
 
@@ -26,10 +26,10 @@ bool Inside(const BallOutline& ball, int x, int y) {
   return (Vector2d(x + 0.5, y + 0.5) - ball.center).norm() <= ball.radius;
 }
 
-// Centre of mass of the pixels around `peak` that are brighter than a threshold and joined to it:
-// a second light's reflection or a lit table below the ball does not count.
-Vector2d CenterOfSpot(const Image& photo, const BallOutline& ball, const Vector2i& peak) {
-  const float threshold = kHighlightShare * Brightness(photo.At(peak.x(), peak.y()));
+// Centre of mass of the connected bright region around `peak`; the reflections of other lights or
+// of a lit table are not part of it.
+Vector2d HighlightCenter(const Image& photo, const BallOutline& ball, const Vector2i& peak) {
+  const float threshold = kHighlightThreshold * Brightness(photo.At(peak.x(), peak.y()));
   std::vector<char> seen(static_cast<std::size_t>(photo.width) * photo.height, 0);
   std::vector<Vector2i> open = {peak};
   Vector2d sum = Vector2d::Zero();
@@ -68,12 +68,13 @@ BallOutline FindBall(const Image& mask, const std::string& name) {
     }
   }
   const double radius = std::sqrt(area / std::numbers::pi);
-  if (radius < kSmallestRadius) {
-    throw InputError("{}: marks {} pixels, too few for a ball; paint the ball white", name, area);
+  if (radius < kMinRadius) {
+    throw InputError("{}: the mask has {} white pixels, too few for a ball; paint the ball white",
+                     name, area);
   }
   const double widest = (highest - lowest).maxCoeff() / 2;
-  if (radius * radius < kLeastRoundness * widest * widest) {
-    throw InputError("{}: what it marks is no disc; paint the whole ball white, nothing else",
+  if (radius * radius < kMinRoundness * widest * widest) {
+    throw InputError("{}: the mask is not a disc; paint the whole ball white, and nothing else",
                      name);
   }
   return {sum / area, radius};
@@ -93,10 +94,10 @@ Vector3d LightFromHighlight(const Image& photo, const BallOutline& ball, const s
       if (brightness > brightest) brightest = brightness, peak = {x, y};
     }
   }
-  if (!(brightest > 0) || brightest < kStandsOut * sum / area) {
-    throw InputError("{}: the ball shows no highlight; photograph it with the light on", name);
+  if (!(brightest > 0) || brightest < kMinContrast * sum / area) {
+    throw InputError("{}: no highlight on the ball; photograph it with the light on", name);
   }
-  const Vector2d at = (CenterOfSpot(photo, ball, peak) - ball.center) / ball.radius;
+  const Vector2d at = (HighlightCenter(photo, ball, peak) - ball.center) / ball.radius;
   const double r2 = std::min(1.0, at.squaredNorm());
   const Vector3d normal(at.x(), -at.y(), std::sqrt(1 - r2));
   return (2 * normal.z() * normal - Vector3d::UnitZ()).normalized();

@@ -7,24 +7,26 @@
 
 namespace nerf {
 
-// Where a mirroring ball stands in a picture, seen from far away (orthographic).
+// The outline of a mirroring ball in a picture, in orthographic projection.
 struct BallOutline {
   Eigen::Vector2d center;  // pixels; centres of pixels lie at +0.5
   double radius = 0;       // pixels
 };
 
-// The outline of a ball from its mask: centre of mass and radius of a disc of the same area.
-//   mask   3 channels; what is above 0.5 in the first belongs to the ball
-//   name   of the mask's file, for messages
-// Throws InputError where the mask is empty, smaller than 10 pixels across, or no disc.
+// The outline of a ball from its mask: the centre of mass, and the radius of a disc of the same
+// area.
+//   mask   3 channels; the ball is where the first is above 0.5
+//   name   of the file of the mask, for messages
+// Throws InputError if the mask is empty, less than 10 pixels wide, or not a disc.
 BallOutline FindBall(const Image& mask, const std::string& name);
 
-// The direction towards the light whose highlight a mirroring ball shows: l = 2 (n . v) n - v, with
-// n the ball's normal at the highlight and v = (0, 0, 1). The highlight is the centre of mass of
-// what is brighter than half of the brightest pixel within the outline, joined to that pixel.
+// The direction to the light that a mirroring ball reflects: l = 2 (n . v) n - v, with the normal n
+// of the ball at the highlight and v = (0, 0, 1). The highlight is the centre of mass of the pixels
+// that are connected with the brightest pixel in the outline and more than half as bright.
 //   photo    linear, 3 channels
-//   returns  unit; x to the right of the picture, y up, z towards the camera
-// Throws InputError, naming the file, where the ball is black or no pixel stands out.
+//   name     of the file, for messages
+//   returns  unit; x right, y up, z towards the camera
+// Throws InputError naming the file if the ball is black or has no highlight.
 Eigen::Vector3d LightFromHighlight(const Image& photo, const BallOutline& ball,
                                    const std::string& name);
 

@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 using std::numbers::pi;
 constexpr double kSameAngle = 1e-3;  // radians
-constexpr double kReach = 2;         // of a light, in typical distances of neighbours
-constexpr int kPixelsOfALight = 100;
+constexpr double kReach = 2;         // of a light, relative to the median distance of neighbours
+constexpr int kPixelsPerLight = 100;
 
 double Polar(const Vector3d& d) { return std::atan2(std::hypot(d.x(), d.z()), d.y()); }
 double Azimuth(const Vector3d& d) {
@@ -27,7 +27,7 @@ double Azimuth(const Vector3d& d) {
   return phi < 0 ? phi + 2 * pi : phi;
 }
 
-// Lights in rows of equal polar angle, spread evenly in azimuth and alike in each row.
+// Lights in rows of equal polar angle, with the same evenly spaced azimuths in each row.
 struct Grid {
   std::vector<double> theta;             // of each row, ascending
   std::vector<std::vector<int>> lights;  // [row][column], azimuth ascending from `phase`
@@ -61,8 +61,8 @@ std::optional<Grid> FindGrid(std::span<const DirectionalLight> lights) {
     grid.lights.push_back(row);
   }
   if (grid.theta.size() < 2) return std::nullopt;
-  // Rows at even distances with half a step to the poles, as pixels have: else there is no sin
-  // term.
+  // The rows must be evenly spaced, with half a step to the poles, as those of pixels are;
+  // otherwise the solid angles are not the sin term.
   const double step = pi / static_cast<double>(grid.theta.size());
   for (std::size_t r = 0; r < grid.theta.size(); ++r) {
     if (std::abs(grid.theta[r] - step * (static_cast<double>(r) + 0.5)) > kSameAngle) {
@@ -77,13 +77,13 @@ int LightOnGrid(const Grid& grid, const Vector3d& d) {
   const int row = std::clamp(static_cast<int>(Polar(d) / pi * rows), 0, rows - 1);
   const auto& lights = grid.lights[static_cast<std::size_t>(row)];
   const auto columns = static_cast<int>(lights.size());
-  const double place = (Azimuth(d) - grid.phase) / (2 * pi) * columns;
-  const int column = (static_cast<int>(std::floor(place + 0.5)) % columns + columns) % columns;
+  const double position = (Azimuth(d) - grid.phase) / (2 * pi) * columns;
+  const int column = (static_cast<int>(std::floor(position + 0.5)) % columns + columns) % columns;
   return lights[static_cast<std::size_t>(column)];
 }
 
-// The cosine of the angle up to which a light speaks for the directions around it. Lights in the
-// same place are one.
+// The cosine of the largest angle between a light and the directions of its cell. Coincident lights
+// count as one.
 float CosineOfReach(const Eigen::Matrix<float, Eigen::Dynamic, 3>& directions) {
   const auto count = static_cast<int>(directions.rows());
   std::vector<float> nearest(static_cast<std::size_t>(count), -1);
@@ -96,16 +96,16 @@ float CosineOfReach(const Eigen::Matrix<float, Eigen::Dynamic, 3>& directions) {
       }
     }
   });
-  const double typical = UpperMedian(nearest);
-  const double reach = kReach * std::acos(std::clamp(typical, -1.0, 1.0));
+  const double median = UpperMedian(nearest);
+  const double reach = kReach * std::acos(std::clamp(median, -1.0, 1.0));
   return static_cast<float>(std::cos(std::min(reach, pi)));
 }
 
 }  // namespace
 
 int CellRows(int lights, int map_height) {
-  // 2 rows^2 pixels in all.
-  const double wanted = std::sqrt(kPixelsOfALight * static_cast<double>(lights) / 2);
+  // There are 2 rows^2 pixels.
+  const double wanted = std::sqrt(kPixelsPerLight * static_cast<double>(lights) / 2);
   return map_height * std::max(1, static_cast<int>(std::ceil(wanted / map_height)));
 }
 
@@ -114,7 +114,7 @@ LightVoronoi::LightVoronoi(std::span<const DirectionalLight> lights, int height)
       height_(height),
       light_of_pixel_(static_cast<std::size_t>(height) * height * 2) {
   if (lights.empty()) throw InputError("no lights to relight with; give one for each image");
-  // Directions of pixels only; the values are not looked at.
+  // For the directions of its pixels; their values are not used.
   const EnvironmentMap pixels(Image(2 * height, height, 3, ColorEncoding::kLinear), "cells");
   const std::optional<Grid> grid = FindGrid(lights);
   on_a_grid_ = grid.has_value();
@@ -122,7 +122,7 @@ LightVoronoi::LightVoronoi(std::span<const DirectionalLight> lights, int height)
   for (int i = 0; i < light_count_; ++i) {
     directions.row(i) = lights[static_cast<std::size_t>(i)].to_light.cast<float>();
   }
-  const float least_cosine = grid ? -1.0f : CosineOfReach(directions);
+  const float min_cosine = grid ? -1.0f : CosineOfReach(directions);
   ParallelFor(height, 1, [&](std::int64_t begin, std::int64_t end) {
     Eigen::VectorXf cosines(light_count_);
     for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
@@ -133,7 +133,7 @@ LightVoronoi::LightVoronoi(std::span<const DirectionalLight> lights, int height)
           light = LightOnGrid(*grid, d);
         } else {
           cosines.noalias() = directions * d.cast<float>();
-          if (cosines.maxCoeff(&light) < least_cosine) light = light_count_;
+          if (cosines.maxCoeff(&light) < min_cosine) light = light_count_;
         }
       }
     }
@@ -154,7 +154,7 @@ std::vector<Color> LightVoronoi::Integrate(const EnvironmentMap& map, double deg
   return sums;
 }
 
-double LightVoronoi::ShareLeftOut(const EnvironmentMap& map, double degrees) const {
+double LightVoronoi::UncoveredFraction(const EnvironmentMap& map, double degrees) const {
   const std::vector<Color> sums = Sums(map, degrees);
   double power = 0;
   for (const Color& sum : sums) power += Luminance(sum);
@@ -164,15 +164,15 @@ double LightVoronoi::ShareLeftOut(const EnvironmentMap& map, double degrees) con
 std::vector<Color> LightVoronoi::Sums(const EnvironmentMap& map, double degrees) const {
   std::vector<Color> sums(static_cast<std::size_t>(light_count_) + 1, Color::Zero());
   const int width = 2 * height_;
-  const int repeat = height_ / map.height();  // a pixel of the map is so many of ours, squared
-  const int turn = static_cast<int>(std::lround(degrees / 360 * width)) % width;
+  const int repeat = height_ / map.height();  // a pixel of the map covers repeat^2 pixels here
+  const int shift = static_cast<int>(std::lround(degrees / 360 * width)) % width;
   for (int y = 0; y < height_; ++y) {
     const double solid_angle =
         2 * pi / width * (std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_));
     for (int x = 0; x < width; ++x) {
-      // What stands at x came from `turn` pixels further right: azimuth grows to the right, which
-      // seen from above is clockwise.
-      const int from = ((x + turn) % width + width) % width;
+      // Azimuth increases to the right, clockwise as seen from above; so a counter-clockwise
+      // rotation moves the environment to the left.
+      const int from = ((x + shift) % width + width) % width;
       const int light = light_of_pixel_[static_cast<std::size_t>(y) * width + x];
       sums[static_cast<std::size_t>(light)] += map.At(from / repeat, y / repeat) * solid_angle;
     }

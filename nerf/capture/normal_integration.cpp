@@ -12,14 +12,14 @@
 namespace nerf {
 namespace {
 
-constexpr float kSteepest = 0.05f;  // n_z below which a slope is cut off: 87 degrees
-constexpr double kAnchor = 1e-9;    // pulls each part's mean to 0; no equation feels it
+constexpr float kMinNormalZ = 0.05f;      // steeper slopes are clamped to this one, 87 degrees
+constexpr double kRegularisation = 1e-9;  // makes the mean of each part 0; otherwise negligible
 
 struct Slope {
   double right, up, weight;
 };
 
-// Numbers the pixels inside; -1 outside.
+// Consecutive numbers for the pixels with a normal; -1 for the others.
 std::vector<int> NumberPixels(const Image& normal, int& count) {
   std::vector<int> number(normal.pixels.size() / 3, -1);
   count = 0;
@@ -31,16 +31,17 @@ std::vector<int> NumberPixels(const Image& normal, int& count) {
 }
 
 Slope SlopeAt(const float* n) {
-  const double nz = std::max(kSteepest, n[2]);
+  const double nz = std::max(kMinNormalZ, n[2]);
   return {-n[0] / nz, -n[1] / nz, nz};
 }
 
-// The normal equations of the differences, which are those of a weighted Laplacian.
+// The normal equations of weighted differences; their matrix is a weighted Laplacian.
 class Differences {
  public:
-  explicit Differences(int count) : diagonal_(count, kAnchor), b_(Eigen::VectorXd::Zero(count)) {}
+  explicit Differences(int count)
+      : diagonal_(count, kRegularisation), b_(Eigen::VectorXd::Zero(count)) {}
 
-  // z[to] - z[from] = rise, with this weight.
+  // Adds the equation z[to] - z[from] = rise with a weight.
   void Add(int from, int to, double rise, double weight) {
     diagonal_[static_cast<std::size_t>(from)] += weight;
     diagonal_[static_cast<std::size_t>(to)] += weight;
@@ -71,11 +72,11 @@ class Differences {
 Image IntegrateNormals(const Image& normal) {
   int count = 0;
   const std::vector<int> number = NumberPixels(normal, count);
-  if (count > kMostPixels) {
+  if (count > kMaxHeightPixels) {
     throw InputError(
-        "{} pixels of normals: depth is for {} at most; mask the subject, or take "
-        "smaller images",
-        count, kMostPixels);
+        "{} pixels of normals: depth is computed for at most {}; mask the subject, or use smaller "
+        "images",
+        count, kMaxHeightPixels);
   }
   Differences differences(count);
   const auto join = [&](int x, int y, int dx, int dy) {

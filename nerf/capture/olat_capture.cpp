@@ -22,8 +22,9 @@ constexpr const char* kChromeName = "chrome";
 
 bool IsMask(const fs::path& file) { return file.stem().string().find("mask") != std::string::npos; }
 
-// "cat.2.tga" before "cat.10.tga": digits compare by their value, the rest by letters.
-bool NaturallyBefore(const fs::path& left, const fs::path& right) {
+// Natural order: numbers in names are compared by value, so that "cat.2.tga" is before
+// "cat.10.tga".
+bool NaturalLess(const fs::path& left, const fs::path& right) {
   const std::string a = left.filename().string();
   const std::string b = right.filename().string();
   const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
@@ -49,20 +50,21 @@ bool NaturallyBefore(const fs::path& left, const fs::path& right) {
 
 std::vector<fs::path> PicturesIn(const fs::path& folder) {
   std::vector<fs::path> files = ImageFilesIn(folder);
-  std::ranges::sort(files, NaturallyBefore);
+  std::ranges::sort(files, NaturalLess);
   return files;
 }
 
-// NAME.txt beside the folder NAME: which images, in which order.
-std::vector<fs::path> Listed(const fs::path& list, const fs::path& folder) {
+// Reads the list NAME.txt of the images in the folder NAME, in order.
+std::vector<fs::path> ReadImageList(const fs::path& list, const fs::path& folder) {
   std::istringstream text(ReadWholeFile(list));
   std::vector<fs::path> files;
   for (std::string line; std::getline(text, line);) {
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
-    if (!HasImageEnding(line)) continue;  // the first line counts them
+    if (!HasImageEnding(line)) continue;  // e.g. the first line, their number
     files.push_back(folder / fs::path(line).filename());
     if (!fs::exists(files.back())) {
-      throw InputError("{}: lists {}, which is not in {}", list.string(), line, folder.string());
+      throw InputError("{}: lists {}, which does not exist in {}", list.string(), line,
+                       folder.string());
     }
   }
   return files;
@@ -76,7 +78,7 @@ struct Pictures {
 Pictures FindPictures(const fs::path& folder) {
   const fs::path list = folder.parent_path() / (folder.filename().string() + ".txt");
   std::vector<fs::path> files;
-  if (fs::is_regular_file(list)) files = Listed(list, folder);
+  if (fs::is_regular_file(list)) files = ReadImageList(list, folder);
   if (files.empty()) files = PicturesIn(folder);
   Pictures pictures;
   for (fs::path& file : files) {
@@ -89,23 +91,23 @@ Pictures FindPictures(const fs::path& folder) {
   return pictures;
 }
 
-// "vase/" and "." are folders with names too.
-fs::path WithItsName(const fs::path& folder) {
+// The path of a folder with its name as the last part, for "vase/" and "." as well.
+fs::path WithFolderName(const fs::path& folder) {
   const auto without_slash = [](const fs::path& path) {
     return path.has_filename() ? path : path.parent_path();
   };
   const fs::path path = without_slash(folder.lexically_normal());
-  const bool named = !path.empty() && path != "." && path.filename() != "..";
-  return named ? path : without_slash(fs::absolute(folder).lexically_normal());
+  const bool has_name = !path.empty() && path != "." && path.filename() != "..";
+  return has_name ? path : without_slash(fs::absolute(folder).lexically_normal());
 }
 
-// What photometric stereo or relighting wrote: pictures of the subject, but under no light alone.
-bool HoldsResults(const fs::path& folder) {
+// Whether a folder contains the output of photometric stereo or relighting, which is no input.
+bool ContainsResults(const fs::path& folder) {
   return fs::exists(folder / "normals.exr") || fs::exists(folder / "relit.exr");
 }
 
-// The folder itself, or its one sub-folder with images that is no chrome ball's and no result.
-fs::path FolderOfImages(const fs::path& folder) {
+// The folder itself, or its only sub-folder of images other than a chrome ball and results.
+fs::path ImageFolder(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw InputError("{}: no such folder; give one with an image for each light", folder.string());
   }
@@ -113,21 +115,22 @@ fs::path FolderOfImages(const fs::path& folder) {
   std::vector<fs::path> subjects;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (!entry.is_directory() || entry.path().filename() == kChromeName) continue;
-    if (HoldsResults(entry.path())) continue;
+    if (ContainsResults(entry.path())) continue;
     if (!PicturesIn(entry.path()).empty()) subjects.push_back(entry.path());
   }
   if (subjects.empty()) {
-    throw InputError("{}: holds no images; give a folder with one for each light", folder.string());
+    throw InputError("{}: contains no images; give a folder with one for each light",
+                     folder.string());
   }
   std::ranges::sort(subjects);
   if (subjects.size() > 1) {
-    throw InputError("{}: holds {} subjects; give one of them, e.g. {}", folder.string(),
+    throw InputError("{}: contains {} subjects; give one of them, e.g. {}", folder.string(),
                      subjects.size(), subjects.front().string());
   }
   return subjects.front();
 }
 
-// The first of `name` in the images' folder and the one above.
+// The path of `name` in the folder of the images or in its parent.
 std::optional<fs::path> Near(const fs::path& folder, const char* name) {
   for (const fs::path& place : {folder / name, folder.parent_path() / name}) {
     if (fs::exists(place)) return place;
@@ -138,12 +141,12 @@ std::optional<fs::path> Near(const fs::path& folder, const char* name) {
 void CheckSizes(OlatCapture& capture) {
   const auto check = [&](const fs::path& file) {
     const ImageHeader header = ReadImageHeader(file);
-    const bool turned = header.orientation > 4;
-    const int width = turned ? header.height : header.width;
-    const int height = turned ? header.width : header.height;
+    const bool rotated = header.orientation > 4;
+    const int width = rotated ? header.height : header.width;
+    const int height = rotated ? header.width : header.height;
     if (capture.width == 0) capture.width = width, capture.height = height;
     if (width == capture.width && height == capture.height) return;
-    throw InputError("{}: is {} x {} pixels, {} is {} x {}; one camera gives one size",
+    throw InputError("{}: {} x {} pixels, but {} has {} x {}; all images must have the same size",
                      file.string(), width, height, capture.images.front().string(), capture.width,
                      capture.height);
   };
@@ -152,21 +155,23 @@ void CheckSizes(OlatCapture& capture) {
 }
 
 void FindLights(OlatCapture& capture, const fs::path& folder, const OlatOptions& options) {
-  const auto near = Near(folder, kLightsName);
-  if (options.lights == "chrome" || (options.lights == "auto" && !near)) {
+  const auto found = Near(folder, kLightsName);
+  const bool from_ball = options.lights == LightSource::kChromeBall ||
+                         (options.lights == LightSource::kAuto && !found);
+  if (from_ball) {
     if (!capture.chrome) {
       throw InputError(
-          "{}: has neither {} nor a folder \"{}\" with a mirroring ball under the "
-          "same lights; add one of them",
+          "{}: contains neither {} nor a folder \"{}\" with a chrome ball under the same lights; "
+          "add one of them",
           folder.string(), kLightsName, kChromeName);
     }
     capture.lights = LightsFromChrome(capture, options.encoding);
-    capture.lights_from = capture.chrome->string();
+    capture.lights_source = capture.chrome->string();
     return;
   }
-  const fs::path file = options.lights == "auto" ? *near : fs::path(options.lights);
+  const fs::path file = options.lights == LightSource::kAuto ? *found : options.light_file;
   capture.lights = ReadLights(file);
-  capture.lights_from = file.string();
+  capture.lights_source = file.string();
   if (capture.lights.size() != capture.images.size()) {
     throw InputError("{}: {} lights for {} images in {}; give one for each", file.string(),
                      capture.lights.size(), capture.images.size(), folder.string());
@@ -176,7 +181,7 @@ void FindLights(OlatCapture& capture, const fs::path& folder, const OlatOptions&
 }  // namespace
 
 OlatCapture FindOlatCapture(const fs::path& given, const OlatOptions& options) {
-  const fs::path folder = FolderOfImages(WithItsName(given));
+  const fs::path folder = ImageFolder(WithFolderName(given));
   OlatCapture capture;
   capture.name = folder.filename().string();
   capture.folder = given;
@@ -184,7 +189,7 @@ OlatCapture FindOlatCapture(const fs::path& given, const OlatOptions& options) {
   capture.images = std::move(pictures.images);
   capture.mask = std::move(pictures.mask);
   if (capture.images.empty()) {
-    throw InputError("{}: holds a mask but no images", folder.string());
+    throw InputError("{}: contains a mask but no images", folder.string());
   }
   const auto chrome = Near(folder, kChromeName);
   if (chrome && fs::is_directory(*chrome) && *chrome != folder) capture.chrome = chrome;
@@ -193,13 +198,13 @@ OlatCapture FindOlatCapture(const fs::path& given, const OlatOptions& options) {
   return capture;
 }
 
-void RefuseAmongImages(const OlatCapture& capture, const fs::path& output) {
+void CheckOutputFolder(const OlatCapture& capture, const fs::path& output) {
   if (!fs::exists(output)) return;
-  std::vector<fs::path> taken = {capture.folder, capture.images.front().parent_path()};
-  if (capture.chrome) taken.push_back(*capture.chrome);
-  for (const fs::path& folder : taken) {
+  std::vector<fs::path> input_folders = {capture.folder, capture.images.front().parent_path()};
+  if (capture.chrome) input_folders.push_back(*capture.chrome);
+  for (const fs::path& folder : input_folders) {
     if (!fs::equivalent(output, folder)) continue;
-    throw InputError("--output {}: belongs to the capture; choose another folder", output.string());
+    throw InputError("--output {}: is part of the capture; choose another folder", output.string());
   }
 }
 
@@ -207,11 +212,11 @@ std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, Input
   const fs::path& folder = *capture.chrome;
   const Pictures pictures = FindPictures(folder);
   if (!pictures.mask) {
-    throw InputError("{}: has no mask of the ball; add an image with \"mask\" in its name",
+    throw InputError("{}: contains no mask of the ball; add an image with \"mask\" in its name",
                      folder.string());
   }
   if (pictures.images.size() != capture.images.size()) {
-    throw InputError("{}: {} images of the ball for {} of {}; give one for each light",
+    throw InputError("{}: {} images of the ball, but {} of {}; give one for each light",
                      folder.string(), pictures.images.size(), capture.images.size(), capture.name);
   }
   const BallOutline ball =

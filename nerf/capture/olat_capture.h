@@ -10,40 +10,48 @@
 
 namespace nerf {
 
-// Photographs of one subject by one camera, each under one light ("one light at a time").
+// Photographs of a subject by a fixed camera, one light at a time (OLAT).
 struct OlatCapture {
   std::string name;                           // of the subject
-  std::filesystem::path folder;               // in which it was looked for
+  std::filesystem::path folder;               // as it was given
   std::vector<std::filesystem::path> images;  // all of one size
-  std::vector<DirectionalLight> lights;       // of each image
-  std::string lights_from;                    // the file or folder that told the directions
+  std::vector<DirectionalLight> lights;       // for each image
+  std::string lights_source;                  // the file or folder of the directions
   std::optional<std::filesystem::path> mask;
   std::optional<std::filesystem::path> chrome;  // folder of a chrome ball under the same lights
   int width = 0;
   int height = 0;
 };
 
+// Where the directions of the lights come from.
+enum class LightSource {
+  kAuto,        // lights.txt if there is one, else the chrome ball
+  kChromeBall,  // highlights on a chrome ball
+  kFile,        // OlatOptions::light_file
+};
+
 struct OlatOptions {
-  // A light file (light_file.h), "chrome", or "auto": lights.txt where there is one, else the ball.
-  std::string lights = "auto";
+  LightSource lights = LightSource::kAuto;
+  std::filesystem::path light_file;  // see light_file.h
   InputEncoding encoding = InputEncoding::kAuto;
 };
 
-// Finds a capture in a folder. The images stand in it, or in its one sub-folder that is no chrome
-// ball's and holds no results (normals.exr, relit.exr). `lights.txt`, and the ball's folder
-// `chrome` with a mask, are looked for in the images' folder and the one above. An image with
-// "mask" in its name is the mask. Images are taken in the order of a list, NAME.txt beside the
-// folder NAME, where there is one (a line an image, only the file's name counts; the data sets of
-// Washington and Harvard), else by name, numbers by value. Throws InputError: no images, of
-// several sizes, several subjects, no lights, or not as many lights as images.
+// Finds a capture in a folder. The images are in the folder itself or in its only sub-folder with
+// images, not counting chrome balls and results (normals.exr, relit.exr). `lights.txt`, and the
+// folder `chrome` of the ball with a mask, are searched for in the folder of the images and in its
+// parent. An image with "mask" in its name is the mask. The order of the images is that of a list,
+// NAME.txt beside the folder NAME, if there is one (one image per line, of which only the file name
+// matters, as in the data sets of the universities of Washington and Harvard), else by name, with
+// numbers compared by value.
+// Throws InputError if there are no images, several sizes, several subjects, no lights, or not as
+// many lights as images.
 OlatCapture FindOlatCapture(const std::filesystem::path& folder, const OlatOptions& options);
 
-// Throws InputError where results would be written among a capture's images, its chrome
-// ball's, or into the folder in which they are looked for, and be taken for more of them the next
-// time.
-void RefuseAmongImages(const OlatCapture& capture, const std::filesystem::path& output);
+// Throws InputError if `output` is a folder in which the next run would take results for images:
+// that of the images, of the chrome ball, or the folder that was given.
+void CheckOutputFolder(const OlatCapture& capture, const std::filesystem::path& output);
 
-// The directions of the lights by the highlights on the capture's chrome ball.
+// The directions of the lights from the highlights on the chrome ball of the capture.
 // Throws InputError naming the file.
 std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, InputEncoding encoding);
 

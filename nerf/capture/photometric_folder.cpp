@@ -17,15 +17,15 @@
 namespace nerf {
 namespace {
 
-constexpr double kCutOff = 0.98;         // share of the albedos that a picture shows unclamped
+constexpr double kUnclipped = 0.98;      // fraction of the albedos that are not clipped in pictures
 constexpr float kWhiteResidual = 0.10f;  // relative to the albedo
 
-// So that albedos of any unit fill the picture's range.
-float ScaleToLookAt(const Image& albedo) {
+// The factor with which albedos of any unit fill the range of a picture.
+float DisplayScale(const Image& albedo) {
   std::vector<float> values;
   std::ranges::copy_if(albedo.pixels, std::back_inserter(values), [](float v) { return v > 0; });
   if (values.empty()) return 1;
-  return 1 / Quantile(values, kCutOff);
+  return 1 / Quantile(values, kUnclipped);
 }
 
 Image Scaled(Image image, float factor) {
@@ -33,7 +33,7 @@ Image Scaled(Image image, float factor) {
   return image;
 }
 
-Image ResidualToLookAt(const Image& residual) {
+Image ResidualAsColors(const Image& residual) {
   Image picture(residual.width, residual.height, 3, ColorEncoding::kSrgb);
   for (std::size_t i = 0; i < residual.pixels.size(); ++i) {
     const Eigen::Vector3f color = Heat(residual.pixels[i] / kWhiteResidual);
@@ -46,18 +46,18 @@ Image ResidualToLookAt(const Image& residual) {
 
 void WritePhotometricFolder(const std::filesystem::path& folder, const PhotometricMaps& maps) {
   MakeOutputFolder(folder);
-  const float scale = ScaleToLookAt(maps.albedo);
+  const float scale = DisplayScale(maps.albedo);
   const DirectionalLight upper_left{Eigen::Vector3d(-0.6, 0.5, 0.62).normalized()};
   WriteImage(folder / "normals.exr", maps.normal);
-  WriteImage(folder / "normals.png", NormalsToLookAt(maps.normal));
+  WriteImage(folder / "normals.png", NormalsAsColors(maps.normal));
   WriteImage(folder / "albedo.exr", maps.albedo);
   WriteImage(folder / "albedo.png", Scaled(maps.albedo, scale));
   WriteImage(folder / "residual.exr", maps.residual);
-  WriteImage(folder / "residual.png", ResidualToLookAt(maps.residual));
+  WriteImage(folder / "residual.png", ResidualAsColors(maps.residual));
   WriteImage(folder / "relit.png", Scaled(RelitByNormals(maps, upper_left), scale));
-  // A mesh of very many pixels is made of blocks of them.
-  const double share = static_cast<double>(maps.pixels) / kMostPixels;
-  const int block = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
+  // Above the limit of IntegrateNormals the maps are reduced first.
+  const double ratio = static_cast<double>(maps.pixels) / kMaxHeightPixels;
+  const int block = std::max(1, static_cast<int>(std::ceil(std::sqrt(ratio))));
   WritePly(folder / "depth.ply", MeshFromHeights(IntegrateNormals(Downscale(maps.normal, block)),
                                                  Downscale(Scaled(maps.albedo, scale), block)));
 }

@@ -17,19 +17,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kSaturated = 0.998f;   // of the largest value of integers
-constexpr double kBlack = 1e-4;        // mean of integers below which a photograph shows nothing
-constexpr double kAgrees = 3;          // residuals; beyond it an observation says nothing of albedo
-constexpr std::int64_t kBlock = 4096;  // pixels a thread takes at a time
-constexpr std::size_t kPixelsOfEncoding = 20'000;  // that tell sRGB from linear
+constexpr float kSaturated = 0.998f;  // relative to the largest integer value
+constexpr double kBlack = 1e-4;       // largest mean of a black image of integers
+constexpr double kOutlier = 3;        // residuals; farther observations are not used for the albedo
+constexpr std::int64_t kBlock = 4096;            // pixels per thread between progress updates
+constexpr std::size_t kEncodingPixels = 20'000;  // used to distinguish sRGB from linear
 
 // The observations of some pixels.
 struct Observations {
   std::span<const int> pixels;  // index y * width + x
-  std::vector<float> values;    // [pixel][light][channel], over the light's intensity
+  std::vector<float> values;    // [pixel][light][channel], divided by the intensity of the light
   std::vector<char> known;      // [pixel][light]: not saturated
 
-  static constexpr std::size_t kBytes = 3 * sizeof(float) + sizeof(char);  // a pixel and light
+  static constexpr std::size_t kBytes = 3 * sizeof(float) + sizeof(char);  // per pixel and light
 };
 
 std::vector<int> PixelsInside(const OlatCapture& capture) {
@@ -50,7 +50,7 @@ std::vector<int> PixelsInside(const OlatCapture& capture) {
   return pixels;
 }
 
-// Whether a channel of a pixel may have been brighter than its file can say.
+// Whether a channel of a pixel may be clipped.
 bool IsSaturated(const float* pixel) {
   return std::max({pixel[0], pixel[1], pixel[2]}) >= kSaturated;
 }
@@ -65,24 +65,23 @@ void CheckExposure(const std::filesystem::path& file, const Image& image, bool i
     saturated += integers && IsSaturated(pixel) ? 1 : 0;
   }
   const auto count = static_cast<double>(pixels.size());
-  // Floats may be of any unit, however small.
+  // Floats have an arbitrary unit, however small.
   if (!(sum / count > (integers ? kBlack : 0))) {
-    throw InputError("{}: is black where the subject is; leave it out with its light",
-                     file.string());
+    throw InputError("{}: the subject is black; remove the image and its light", file.string());
   }
   if (saturated / count > 0.5) {
-    throw InputError("{}: {:.0f} % of the subject is saturated; expose it less", file.string(),
-                     100 * saturated / count);
+    throw InputError("{}: {:.0f} % of the subject is saturated; use a shorter exposure",
+                     file.string(), 100 * saturated / count);
   }
 }
 
-// Reads all images for the observations of `pixels`.
-//   check  pixels on which an image must show something; none: it is known to
+// Reads the observations of `pixels` from all images.
+//   check  pixels that must not be black or mostly saturated; empty: has been checked
 Observations ReadObservations(const OlatCapture& capture, InputEncoding encoding,
                               std::span<const int> pixels, std::span<const int> check) {
   const std::size_t lights = capture.lights.size();
-  Observations seen{pixels, std::vector<float>(pixels.size() * lights * 3),
-                    std::vector<char>(pixels.size() * lights)};
+  Observations observed{pixels, std::vector<float>(pixels.size() * lights * 3),
+                        std::vector<char>(pixels.size() * lights)};
   ProgressLine progress("reading", static_cast<std::int64_t>(lights));
   for (std::size_t i = 0; i < lights; ++i) {
     const auto& file = capture.images[i];
@@ -93,33 +92,33 @@ Observations ReadObservations(const OlatCapture& capture, InputEncoding encoding
     const Color intensity = capture.lights[i].irradiance / std::numbers::pi;
     for (std::size_t p = 0; p < pixels.size(); ++p) {
       const float* pixel = &image.pixels[static_cast<std::size_t>(pixels[p]) * 3];
-      seen.known[p * lights + i] = !(integers && IsSaturated(pixel));
+      observed.known[p * lights + i] = !(integers && IsSaturated(pixel));
       for (int c = 0; c < 3; ++c) {
-        seen.values[(p * lights + i) * 3 + c] = pixel[c] / static_cast<float>(intensity[c]);
+        observed.values[(p * lights + i) * 3 + c] = pixel[c] / static_cast<float>(intensity[c]);
       }
     }
   }
-  return seen;
+  return observed;
 }
 
-// One pixel: its estimate, and the albedo of each channel.
+// The estimate of a pixel with the albedo of each channel.
 struct Solved {
   SurfaceEstimate surface;
   Color albedo = Color::Zero();
 };
 
 Solved SolvePixel(const PhotometricSolver& solver, const OlatCapture& capture,
-                  const Observations& seen, std::size_t p, std::vector<double>& b) {
+                  const Observations& observed, std::size_t p, std::vector<double>& b) {
   const std::size_t lights = capture.lights.size();
-  const float* values = &seen.values[p * lights * 3];
-  const char* known = &seen.known[p * lights];
+  const float* values = &observed.values[p * lights * 3];
+  const char* known = &observed.known[p * lights];
   for (std::size_t i = 0; i < lights; ++i) {
     const float* v = values + i * 3;
     b[i] = known[i] ? std::max(0.0f, (v[0] + v[1] + v[2]) / 3) : -1.0;
   }
   Solved solved{solver.Solve(b)};
   const SurfaceEstimate& surface = solved.surface;
-  const double tolerance = kAgrees * std::max(surface.residual, 1e-6) * surface.albedo;
+  const double tolerance = kOutlier * std::max(surface.residual, 1e-6) * surface.albedo;
   double squares = 0;
   Color products = Color::Zero();
   for (std::size_t i = 0; i < lights; ++i) {
@@ -133,13 +132,13 @@ Solved SolvePixel(const PhotometricSolver& solver, const OlatCapture& capture,
   return solved;
 }
 
-// Solves some pixels into the maps, several at a time.
-//   solved  of all pixels before these, for the progress line
+// Solves the observed pixels in parallel and stores them in the maps.
+//   solved  number of pixels solved before, for the progress line
 void SolvePixels(const PhotometricSolver& solver, const OlatCapture& capture,
-                 const Observations& seen, std::int64_t solved, ProgressLine& progress,
+                 const Observations& observed, std::int64_t solved, ProgressLine& progress,
                  PhotometricMaps& maps) {
-  const auto count = std::ssize(seen.pixels);
-  std::vector<char> robust(seen.pixels.size(), 0);
+  const auto count = std::ssize(observed.pixels);
+  std::vector<char> robust(observed.pixels.size(), 0);
   for (std::int64_t begin = 0; begin < count; begin += kBlock * NumThreads()) {
     progress.Update(solved + begin);
     const std::int64_t block = std::min<std::int64_t>(count - begin, kBlock * NumThreads());
@@ -147,9 +146,9 @@ void SolvePixels(const PhotometricSolver& solver, const OlatCapture& capture,
       std::vector<double> b(capture.lights.size());
       for (auto p = static_cast<std::size_t>(begin + first);
            p < static_cast<std::size_t>(begin + last); ++p) {
-        const Solved pixel = SolvePixel(solver, capture, seen, p, b);
+        const Solved pixel = SolvePixel(solver, capture, observed, p, b);
         if (!(pixel.surface.albedo > 0)) continue;
-        const auto at = static_cast<std::size_t>(seen.pixels[p]);
+        const auto at = static_cast<std::size_t>(observed.pixels[p]);
         for (int c = 0; c < 3; ++c) {
           maps.normal.pixels[at * 3 + c] = static_cast<float>(pixel.surface.normal[c]);
           maps.albedo.pixels[at * 3 + c] = static_cast<float>(pixel.albedo[c]);
@@ -167,7 +166,7 @@ void Summarise(std::span<const int> pixels, PhotometricMaps& maps) {
   for (const int at : pixels) {
     const float* n = &maps.normal.pixels[static_cast<std::size_t>(at) * 3];
     if (n[0] == 0 && n[1] == 0 && n[2] == 0) {
-      ++maps.unknown_pixels;
+      ++maps.unsolved_pixels;
     } else {
       residuals.push_back(maps.residual.pixels[static_cast<std::size_t>(at)]);
     }
@@ -176,13 +175,14 @@ void Summarise(std::span<const int> pixels, PhotometricMaps& maps) {
   maps.median_residual = UpperMedian(residuals);
 }
 
-// Of `pixels`, or of about `most` of them, evenly.
+// Solves the pixels inside the mask, or about `max_pixels` evenly spread ones.
 PhotometricMaps SolveSome(const OlatCapture& capture, InputEncoding encoding,
-                          const StereoOptions& options, std::int64_t memory, std::size_t most) {
+                          const StereoOptions& options, std::int64_t memory,
+                          std::size_t max_pixels) {
   const PhotometricSolver solver(capture.lights, options);
   const std::vector<int> inside = PixelsInside(capture);
   std::vector<int> pixels;
-  const std::size_t step = std::max<std::size_t>(1, inside.size() / most);
+  const std::size_t step = std::max<std::size_t>(1, inside.size() / max_pixels);
   for (std::size_t i = 0; i < inside.size(); i += step) pixels.push_back(inside[i]);
   const auto linear = ColorEncoding::kLinear;
   PhotometricMaps maps{Image(capture.width, capture.height, 3, linear),
@@ -194,8 +194,8 @@ PhotometricMaps SolveSome(const OlatCapture& capture, InputEncoding encoding,
   for (std::size_t begin = 0; begin < pixels.size(); begin += at_once) {
     const auto part = std::span(pixels).subspan(begin, std::min(at_once, pixels.size() - begin));
     const auto check = begin == 0 ? std::span<const int>(inside) : std::span<const int>();
-    const Observations seen = ReadObservations(capture, encoding, part, check);
-    SolvePixels(solver, capture, seen, static_cast<std::int64_t>(begin), progress, maps);
+    const Observations observed = ReadObservations(capture, encoding, part, check);
+    SolvePixels(solver, capture, observed, static_cast<std::int64_t>(begin), progress, maps);
   }
   Summarise(pixels, maps);
   return maps;
@@ -213,8 +213,7 @@ InputEncoding EncodingByResidual(const OlatCapture& capture) {
   StereoOptions plain;
   plain.method = StereoMethod::kLeastSquares;
   const auto residual = [&](InputEncoding encoding) {
-    return SolveSome(capture, encoding, plain, kObservationBytes, kPixelsOfEncoding)
-        .median_residual;
+    return SolveSome(capture, encoding, plain, kObservationBytes, kEncodingPixels).median_residual;
   };
   return residual(InputEncoding::kSrgb) <= residual(InputEncoding::kLinear)
              ? InputEncoding::kSrgb
@@ -234,7 +233,7 @@ Image RelitByNormals(const PhotometricMaps& maps, const DirectionalLight& light)
   return relit;
 }
 
-Image NormalsToLookAt(const Image& normal) {
+Image NormalsAsColors(const Image& normal) {
   Image picture(normal.width, normal.height, 3, ColorEncoding::kSrgb);
   for (std::size_t i = 0; i < normal.pixels.size(); i += 3) {
     const float* n = &normal.pixels[i];

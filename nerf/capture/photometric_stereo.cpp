@@ -15,10 +15,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kCoplanar = 0.02;          // smallest over largest singular value
-constexpr double kLeastDeterminant = 1e-4;  // of a triple of unit directions
+constexpr double kCoplanar = 0.02;        // smallest over largest singular value
+constexpr double kMinDeterminant = 1e-4;  // of a triple of unit directions
 constexpr int kRefits = 8;
-constexpr double kBiweightReach = 2;  // of the biweight, in tolerances
+constexpr double kBiweightRadius = 2;  // of the biweight, in tolerances
 
 SurfaceEstimate EstimateFrom(const Vector3d& g) {
   SurfaceEstimate estimate;
@@ -29,7 +29,7 @@ SurfaceEstimate EstimateFrom(const Vector3d& g) {
   return estimate;
 }
 
-// Normal equations of the observations that are taken in, one at a time.
+// Weighted normal equations, accumulated one observation at a time.
 struct NormalEquations {
   Matrix3d LtL = Matrix3d::Zero();
   Vector3d Ltb = Vector3d::Zero();
@@ -40,7 +40,7 @@ struct NormalEquations {
     Ltb += weight * b * light;
     ++count;
   }
-  // Zero where the lights do not span space.
+  // Zero if the lights do not span space.
   Vector3d Solve() const {
     if (count < 3) return Vector3d::Zero();
     const Eigen::LDLT<Matrix3d> factors(LtL);
@@ -54,10 +54,10 @@ struct NormalEquations {
 void StereoOptions::Check() const {
   if (!(dark >= 0 && dark < 1)) throw InputError("--dark is {}: choose 0 to 1", dark);
   if (!(tolerance > 0)) throw InputError("--tolerance is {}: choose above 0", tolerance);
-  if (!(largest_residual >= 0)) {
-    throw InputError("--residual is {}: choose 0 or more", largest_residual);
+  if (!(max_residual >= 0)) {
+    throw InputError("--residual is {}: choose 0 or more", max_residual);
   }
-  if (most_triples < 1) throw InputError("--triples is {}: choose 1 or more", most_triples);
+  if (max_triples < 1) throw InputError("--triples is {}: choose 1 or more", max_triples);
 }
 
 PhotometricSolver::PhotometricSolver(std::span<const DirectionalLight> lights,
@@ -66,20 +66,19 @@ PhotometricSolver::PhotometricSolver(std::span<const DirectionalLight> lights,
   options.Check();
   const int n = static_cast<int>(lights.size());
   if (n < 3) {
-    throw InputError("{} lights: normals need three or more that are not in one plane", n);
+    throw InputError("{} lights: normals need three or more lights that are not in one plane", n);
   }
   for (int i = 0; i < n; ++i) lights_.row(i) = lights[i].to_light;
   const Vector3d spread = Eigen::JacobiSVD<Eigen::MatrixXd>(lights_).singularValues();
   if (spread.z() < kCoplanar * spread.x()) {
-    throw InputError("the {} lights lie in one plane with the subject; move one out of it", n);
+    throw InputError("the {} lights are in one plane with the subject; move one out of it", n);
   }
   const auto add = [&](int i, int j, int k) {
     Matrix3d L;
     L << lights_.row(i), lights_.row(j), lights_.row(k);
-    if (std::abs(L.determinant()) >= kLeastDeterminant)
-      triples_.push_back({{i, j, k}, L.inverse()});
+    if (std::abs(L.determinant()) >= kMinDeterminant) triples_.push_back({{i, j, k}, L.inverse()});
   };
-  if (std::int64_t{n} * (n - 1) * (n - 2) / 6 <= options.most_triples) {
+  if (std::int64_t{n} * (n - 1) * (n - 2) / 6 <= options.max_triples) {
     for (int i = 0; i < n; ++i) {
       for (int j = i + 1; j < n; ++j) {
         for (int k = j + 1; k < n; ++k) add(i, j, k);
@@ -87,13 +86,13 @@ PhotometricSolver::PhotometricSolver(std::span<const DirectionalLight> lights,
     }
     return;
   }
-  for (std::uint64_t draw = 0; draw < 10 * static_cast<std::uint64_t>(options.most_triples);
+  for (std::uint64_t draw = 0; draw < 10 * static_cast<std::uint64_t>(options.max_triples);
        ++draw) {
-    if (std::ssize(triples_) == options.most_triples) break;
+    if (std::ssize(triples_) == options.max_triples) break;
     const auto light = [&](std::uint64_t corner) {
       return static_cast<int>(RandomBelow(static_cast<std::uint32_t>(n), 1, corner, draw));
     };
-    add(light(0), light(1), light(2));  // the same light twice has no determinant
+    add(light(0), light(1), light(2));  // the determinant is 0 if a light is drawn twice
   }
 }
 
@@ -104,8 +103,7 @@ SurfaceEstimate PhotometricSolver::Solve(std::span<const double> observations) c
   const double brightest = *std::ranges::max_element(observations);
   const bool in_shadow = std::ranges::any_of(
       observations, [&](double b) { return b >= 0 && b <= options_.dark * brightest; });
-  const bool explained =
-      plain.albedo > 0 && !in_shadow && plain.residual <= options_.largest_residual;
+  const bool explained = plain.albedo > 0 && !in_shadow && plain.residual <= options_.max_residual;
   return explained ? plain : Robust(observations);
 }
 
@@ -115,8 +113,8 @@ SurfaceEstimate PhotometricSolver::LeastSquares(std::span<const double> observat
     if (observations[i] >= 0) equations.Add(lights_.row(i), observations[i]);
   }
   const Vector3d g = equations.Solve();
-  // What is seen faces the camera: another answer tells that the model does not fit, not where the
-  // surface faces, and mirroring it would be made up.
+  // Visible surfaces face the camera. Another result means that the model does not fit; flipping
+  // the normal would not make it right.
   if (g.z() <= 0) return {};
   SurfaceEstimate estimate = EstimateFrom(g);
   double squares = 0;
@@ -146,34 +144,34 @@ SurfaceEstimate PhotometricSolver::Robust(std::span<const double> observations) 
     return observations[i] - std::max(0.0, lights_.row(i).dot(g));
   };
   const double tolerance = options_.tolerance * brightest;
-  double least = std::numeric_limits<double>::infinity();
+  double lowest_cost = std::numeric_limits<double>::infinity();
   Vector3d g = Vector3d::Zero();
   for (const Triple& triple : triples_) {
     const auto [i, j, k] = triple.lights;
     if (observations[i] <= dark || observations[j] <= dark || observations[k] <= dark) continue;
     const Vector3d candidate =
         triple.g_from_b * Vector3d(observations[i], observations[j], observations[k]);
-    if (candidate.z() <= 0) continue;  // what is seen faces the camera
+    if (candidate.z() <= 0) continue;  // visible surfaces face the camera
     double sum = 0;
     for (const int light : known) {
       const double r = residual(candidate, light);
       sum += std::min(r * r, tolerance * tolerance);
     }
-    if (sum < least) least = sum, g = candidate;
+    if (sum < lowest_cost) lowest_cost = sum, g = candidate;
   }
-  if (!(least < std::numeric_limits<double>::infinity())) return {};
+  if (!(lowest_cost < std::numeric_limits<double>::infinity())) return {};
 
-  // From what that triple explains to all that agrees with it, without a hard edge between.
-  const double reach = kBiweightReach * tolerance;
+  // Refit all observations that agree, with smoothly decreasing weights.
+  const double radius = kBiweightRadius * tolerance;
   for (int refit = 0; refit < kRefits; ++refit) {
     NormalEquations equations;
     for (const int i : known) {
-      const double r = residual(g, i) / reach;
+      const double r = residual(g, i) / radius;
       if (std::abs(r) >= 1 || observations[i] <= dark || lights_.row(i).dot(g) <= 0) continue;
       equations.Add(lights_.row(i), observations[i], (1 - r * r) * (1 - r * r));
     }
     const Vector3d refitted = equations.Solve();
-    if (refitted.z() <= 0) break;  // none, or away from the camera
+    if (refitted.z() <= 0) break;  // no solution, or facing away
     g = refitted;
   }
   double sum = 0;

@@ -12,7 +12,7 @@
 namespace nerf {
 namespace {
 
-constexpr double kBright = 0.98;  // share of pixels that stay below kBrightValue
+constexpr double kBright = 0.98;  // fraction of pixels that are below kBrightValue
 constexpr double kBrightValue = 0.8;
 
 // sum += weight * image, channel by channel.
@@ -45,7 +45,7 @@ bool Relight(const OlatCapture& capture, InputEncoding encoding,
   const auto image_bytes =
       std::int64_t{capture.width} * capture.height * 3 * static_cast<std::int64_t>(sizeof(float));
   const int sets = static_cast<int>(weights.size());
-  // One image is being read, and its decoder holds another.
+  // One image is being read, and its decoder needs memory for another.
   const int at_once =
       static_cast<int>(std::clamp<std::int64_t>(memory / image_bytes - 2, 1, std::max(1, sets)));
   const int passes = (sets + at_once - 1) / at_once;
@@ -61,7 +61,7 @@ bool Relight(const OlatCapture& capture, InputEncoding encoding,
       progress.Update(std::int64_t{first / at_once} * images + i, file.filename().string());
       const Image image = ReadLinearImage(file, encoding);
       if (image.width != capture.width || image.height != capture.height) {
-        throw InputError("{}: is {} x {} pixels, the capture's are {} x {}", file.string(),
+        throw InputError("{}: {} x {} pixels, but the capture has {} x {}", file.string(),
                          image.width, image.height, capture.width, capture.height);
       }
       for (int s = 0; s < count; ++s) {
@@ -75,7 +75,7 @@ bool Relight(const OlatCapture& capture, InputEncoding encoding,
   return true;
 }
 
-void RefuseBlackCapture(const OlatCapture& capture, InputEncoding encoding) {
+void CheckNotBlack(const OlatCapture& capture, InputEncoding encoding) {
   const auto is_black = [&](const std::filesystem::path& file) {
     const Image image = ReadLinearImage(file, encoding);
     return std::ranges::none_of(image.pixels, [](float value) { return value > 0; });
@@ -95,7 +95,7 @@ double AutoExposure(const Image& picture) {
   return value > 0 ? std::log2(kBrightValue / value) : 0;
 }
 
-Image Exposed(Image picture, double stops) {
+Image WithExposure(Image picture, double stops) {
   const auto factor = static_cast<float>(FactorFromStops(stops));
   for (float& value : picture.pixels) value *= factor;
   return picture;

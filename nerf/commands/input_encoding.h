@@ -7,7 +7,7 @@
 
 namespace nerf {
 
-// --encoding auto|srgb|linear: what the numbers of the given images mean.
+// --encoding auto|srgb|linear: how the values of the input images relate to light.
 inline void AddInputEncodingOption(CLI::App& command, InputEncoding& encoding,
                                    const std::string& meaning) {
   AddChoiceOption<InputEncoding>(command, "--encoding", encoding,

@@ -13,6 +13,7 @@
 #include "nerf/commands/choice_option.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/input_encoding.h"
+#include "nerf/commands/olat_flags.h"
 #include "nerf/commands/threads.h"
 
 namespace nerf {
@@ -39,7 +40,7 @@ void RunPhotometricStereo(const StereoArguments& arguments) {
   const auto capture = FindOlatCapture(arguments.folder, arguments.capture);
   const std::filesystem::path folder =
       arguments.output.empty() ? capture.name + "-normals" : arguments.output;
-  RefuseAmongImages(capture, folder);
+  CheckOutputFolder(capture, folder);
   const InputEncoding encoding = arguments.capture.encoding == InputEncoding::kAuto
                                      ? EncodingByResidual(capture)
                                      : arguments.capture.encoding;
@@ -48,67 +49,62 @@ void RunPhotometricStereo(const StereoArguments& arguments) {
   WritePhotometricFolder(folder, maps);
   const double share = 100.0 / std::max(1, maps.pixels);
   fmt::print(
-      "{}: {} images, taken as {}, lights from {}\n"
-      "{} pixels: {:.1f} % by least squares, {:.1f} % robust, {:.1f} % without an answer\n"
-      "residual {:.2f} % of the albedo in the median; {:.1f} s\n"
+      "{}: {} images, read as {}, lights from {}\n"
+      "{} pixels: {:.1f} % by least squares, {:.1f} % robust, {:.1f} % unsolved\n"
+      "median residual {:.2f} % of the albedo; {:.1f} s\n"
       "normals, albedo, residual, depth.ply and relit.png are in {}\n",
       capture.name, capture.images.size(), encoding == InputEncoding::kSrgb ? "sRGB" : "linear",
-      capture.lights_from, maps.pixels,
-      share * (maps.pixels - maps.robust_pixels - maps.unknown_pixels), share * maps.robust_pixels,
-      share * maps.unknown_pixels, 100 * maps.median_residual, watch.Seconds(), folder.string());
+      capture.lights_source, maps.pixels,
+      share * (maps.pixels - maps.robust_pixels - maps.unsolved_pixels), share * maps.robust_pixels,
+      share * maps.unsolved_pixels, 100 * maps.median_residual, watch.Seconds(), folder.string());
 }
 
 }  // namespace
 
 void AddPhotometricStereoCommand(CLI::App& app) {
   auto arguments = std::make_shared<StereoArguments>();
-  CLI::App* command = app.add_subcommand(
-      "photometric-stereo", "Normals and albedo from photographs under one light at a time");
+  CLI::App* command =
+      app.add_subcommand("photometric-stereo",
+                         "Computes normals and albedo from photographs under one light at a time");
   command
       ->add_option("folder", arguments->folder,
-                   "images of one camera, one a light; with lights.txt or a folder chrome")
+                   "images from one camera, one for each light; with lights.txt or a folder chrome")
       ->required();
-  command->add_option("-o,--output", arguments->output, "folder of the results; NAME-normals");
-  command
-      ->add_option("--lights", arguments->capture.lights,
-                   "a file with a direction a line; chrome: by the ball's highlights; auto: "
-                   "lights.txt, else the ball")
-      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "output folder [NAME-normals]");
+  AddLightsOption(*command, arguments->capture);
   AddInputEncodingOption(*command, arguments->capture.encoding,
-                         "of the images: srgb, linear, or auto: of 8 bits that in which least "
-                         "squares explain them better; all else is linear");
+                         "of the images: srgb, linear, or auto: 8-bit images as the one with the "
+                         "smaller least-squares residual, others as linear");
   AddChoiceOption<StereoMethod>(
       *command, "--method", arguments->stereo.method,
       {{"auto", StereoMethod::kAuto},
        {"least-squares", StereoMethod::kLeastSquares},
        {"robust", StereoMethod::kRobust}},
       "least-squares, robust (against shadows and highlights), or auto: robust where "
-      "least squares leaves more than --residual");
+      "the residual of least squares exceeds --residual");
   command
-      ->add_option(
-          "--residual", arguments->stereo.largest_residual,
-          "of least squares, relative to the albedo, beyond which auto is robust (as it is "
-          "where a light leaves a pixel in shadow)")
+      ->add_option("--residual", arguments->stereo.max_residual,
+                   "largest residual of least squares, relative to the albedo; above it, and in "
+                   "shadow, auto uses the robust method")
       ->capture_default_str();
   command
-      ->add_option("--tolerance", arguments->stereo.tolerance,
-                   "of the robust method: share of a pixel's brightest observation beyond which a "
-                   "residual is a shadow or a highlight")
+      ->add_option(
+          "--tolerance", arguments->stereo.tolerance,
+          "of the robust method: larger residuals, relative to the brightest observation of a "
+          "pixel, are shadows or highlights")
       ->capture_default_str();
   command
       ->add_option("--dark", arguments->stereo.dark,
-                   "share of a pixel's brightest observation below which it lies in shadow")
+                   "observations below this fraction of the brightest one of a pixel are in shadow")
       ->capture_default_str();
   command
       ->add_option("--memory-mb", arguments->memory_mb,
-                   "for the observations of pixels; where they are more, images are read again "
-                   "for each part of them")
+                   "memory for observations; if they do not fit, the images are read several times")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
-      "lights.txt: a line an image, \"x y z\", \"x y z intensity\" or \"x y z r g b\"; x right, y "
-      "up,\n"
-      "z towards the camera. An image with \"mask\" in its name marks the subject in white.\n"
+      "lights.txt: a line per image, \"x y z\", \"x y z intensity\" or \"x y z r g b\"; x right,\n"
+      "y up, z towards the camera. An image with \"mask\" in its name is white on the subject.\n"
       "Examples:\n"
       "  nerf photometric-stereo photometric/cat\n"
       "  nerf photometric-stereo photometric/cat --lights chrome -o out/cat\n"

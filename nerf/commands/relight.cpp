@@ -17,6 +17,7 @@
 #include "nerf/base/stopwatch.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/input_encoding.h"
+#include "nerf/commands/olat_flags.h"
 #include "nerf/commands/threads.h"
 #include "nerf/image/image_io.h"
 #include "nerf/image/image_metrics.h"
@@ -29,9 +30,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kFramesPerSecond = 24;
-constexpr std::size_t kFewestLights = 3;
-constexpr double kMostStops = 64;         // beyond it floats overflow
-constexpr double kWorthAWarning = 0.001;  // of the environment's power
+constexpr std::size_t kMinLights = 3;
+constexpr double kMaxStops = 64;         // beyond it floats overflow
+constexpr double kMaxUncovered = 0.001;  // of the power of the environment, without a warning
 
 struct RelightArguments {
   std::string capture;
@@ -52,42 +53,63 @@ struct RelightArguments {
     if (!(std::abs(rotate) <= 360)) {
       throw InputError("--rotate is {}: choose -360 to 360 degrees", rotate);
     }
-    if (exposure && !(std::abs(*exposure) <= kMostStops)) {
-      throw InputError("--exposure is {}: choose -{} to {} stops", *exposure, kMostStops,
-                       kMostStops);
+    if (exposure && !(std::abs(*exposure) <= kMaxStops)) {
+      throw InputError("--exposure is {}: choose -{} to {} stops", *exposure, kMaxStops, kMaxStops);
     }
     if (memory_mb < 1) throw InputError("--memory-mb is {}: choose 1 or more", memory_mb);
     if (frames > 0 && !FfmpegIsInstalled()) {
-      throw InputError("--frames needs the ffmpeg program: install it");
+      throw InputError("--frames needs the program ffmpeg: install it");
     }
   }
 };
 
-// A map's file, or a light's name: the same from all sides.
+// The map in a file, or a uniform one with the colour of a named light.
 EnvironmentMap OpenEnvironment(const std::string& name) {
   if (!fs::exists(name)) {
     if (const auto color = ColorOfLight(name)) return EnvironmentMap::Uniform(*color);
-    throw InputError("--environment {}: neither a file nor a light's name; names are {}", name,
+    throw InputError("--environment {}: neither a file nor a named light; the names are {}", name,
                      kLightNames);
   }
   return EnvironmentMap::Read(name);
 }
 
-// Before anything is summed: a wrong file is told at once.
+// Called before the images are summed, so that a wrong file is reported at once.
 Image OpenTruth(const fs::path& file, const OlatCapture& capture) {
   Image truth = ReadLinearImage(file, InputEncoding::kAuto);
   if (truth.width == capture.width && truth.height == capture.height) return truth;
-  throw InputError("--truth {}: is {} x {} pixels, the capture's are {} x {}", file.string(),
+  throw InputError("--truth {}: {} x {} pixels, but the capture has {} x {}", file.string(),
                    truth.width, truth.height, capture.width, capture.height);
 }
 
 OlatCapture OpenCapture(const RelightArguments& arguments) {
   OlatCapture capture = FindOlatCapture(arguments.capture, arguments.olat);
-  if (capture.lights.size() < kFewestLights) {
-    throw InputError("{}: images under {} light{}; relighting needs {} or more", arguments.capture,
-                     capture.lights.size(), capture.lights.size() == 1 ? "" : "s", kFewestLights);
+  if (capture.lights.size() < kMinLights) {
+    throw InputError("{}: images under {} light{}; relighting needs at least {}", arguments.capture,
+                     capture.lights.size(), capture.lights.size() == 1 ? "" : "s", kMinLights);
   }
   return capture;
+}
+
+// The weights of the images for each frame. Warns if the capture has no lights where a noticeable
+// part of the light comes from.
+std::vector<std::vector<Color>> WeightsOfFrames(const RelightArguments& arguments,
+                                                const OlatCapture& capture,
+                                                const LightVoronoi& cells,
+                                                const EnvironmentMap& map, int frames) {
+  std::vector<std::vector<Color>> weights;
+  double uncovered = 0;
+  for (int f = 0; f < frames; ++f) {
+    const double degrees = arguments.rotate + 360.0 * f / frames;
+    weights.push_back(RelightWeights(capture, cells, map, degrees));
+    uncovered = std::max(uncovered, cells.UncoveredFraction(map, degrees));
+  }
+  if (uncovered > kMaxUncovered) {
+    spdlog::warn(
+        "{}{:.1f} % of the light of {} comes from directions without a light in the capture and is "
+        "left out",
+        frames > 1 ? "up to " : "", 100 * uncovered, arguments.environment);
+  }
+  return weights;
 }
 
 void RunRelight(const RelightArguments& arguments) {
@@ -97,28 +119,18 @@ void RunRelight(const RelightArguments& arguments) {
   const auto& stop = StopOnInterrupt();
   const OlatCapture capture = OpenCapture(arguments);
   const fs::path folder = arguments.output.empty() ? capture.name + "-relit" : arguments.output;
-  RefuseAmongImages(capture, folder);
+  CheckOutputFolder(capture, folder);
   std::optional<Image> truth;
   if (!arguments.truth.empty()) truth = OpenTruth(arguments.truth, capture);
   const EnvironmentMap map = OpenEnvironment(arguments.environment);
-  RefuseBlackCapture(capture, arguments.olat.encoding);
+  CheckNotBlack(capture, arguments.olat.encoding);
   const LightVoronoi cells(capture.lights,
                            CellRows(static_cast<int>(capture.lights.size()), map.height()));
-  double left_out = 0;
-  std::vector<std::vector<Color>> weights;
   const int frames = std::max(1, arguments.frames);
-  for (int f = 0; f < frames; ++f) {
-    const double degrees = arguments.rotate + 360.0 * f / frames;
-    weights.push_back(RelightWeights(capture, cells, map, degrees));
-    left_out = std::max(left_out, cells.ShareLeftOut(map, degrees));
-  }
-  if (left_out > kWorthAWarning) {
-    spdlog::warn("{}{:.1f} % of {}'s light comes from where the capture has no lights: left out",
-                 frames > 1 ? "up to " : "", 100 * left_out, arguments.environment);
-  }
+  const auto weights = WeightsOfFrames(arguments, capture, cells, map, frames);
   const fs::path frame_folder = folder / "frames";
   MakeOutputFolder(arguments.frames > 0 ? frame_folder : folder);
-  // One exposure for the whole film: by its first frame.
+  // One exposure for the whole film, from its first frame.
   std::optional<double> stops = arguments.exposure;
   std::optional<double> psnr;
   const bool finished = Relight(
@@ -127,16 +139,16 @@ void RunRelight(const RelightArguments& arguments) {
       [&](int frame, const Image& picture) {
         if (!stops) stops = AutoExposure(picture);
         if (frame == 0) {
-          if (truth) psnr = Psnr(Exposed(*truth, *stops), Exposed(picture, *stops));
+          if (truth) psnr = Psnr(WithExposure(*truth, *stops), WithExposure(picture, *stops));
           WriteImage(folder / "relit.exr", picture);
-          WriteImage(folder / "relit.png", Exposed(picture, *stops));
+          WriteImage(folder / "relit.png", WithExposure(picture, *stops));
         }
         if (arguments.frames > 0) {
-          WriteImage(frame_folder / FrameName(frame), Exposed(picture, *stops));
+          WriteImage(frame_folder / FrameName(frame), WithExposure(picture, *stops));
         }
       });
   if (!finished) {
-    fmt::print("stopped; the pictures that are done are in {}\n", folder.string());
+    fmt::print("stopped; the finished pictures are in {}\n", folder.string());
     throw CLI::RuntimeError(130);
   }
   if (arguments.frames > 0) {
@@ -148,7 +160,7 @@ void RunRelight(const RelightArguments& arguments) {
       capture.name, capture.lights.size(), cells.on_a_grid() ? " on a grid" : "", capture.width,
       capture.height, frames, frames == 1 ? "" : "s", *stops, watch.Seconds(),
       arguments.frames > 0 ? " and rotation.mp4" : "", folder.string());
-  if (psnr) fmt::print("{:.2f} dB from {}\n", *psnr, arguments.truth);
+  if (psnr) fmt::print("PSNR {:.2f} dB against {}\n", *psnr, arguments.truth);
 }
 
 }  // namespace
@@ -157,33 +169,35 @@ void AddRelightCommand(CLI::App& app) {
   auto arguments = std::make_shared<RelightArguments>();
   CLI::App* command = app.add_subcommand(
       "relight",
-      "A light-stage capture under any environment: a picture, or its rotation as a film");
+      "Renders a light-stage capture under an environment, as a picture or as a film of its "
+      "rotation");
   command
       ->add_option("capture", arguments->capture,
                    "a folder with an image for each light, and lights.txt or a folder chrome")
       ->required();
   command
-      ->add_option("--environment", arguments->environment,
-                   std::string("an HDR or EXR map, twice as wide as high, or a light's name: ") +
-                       kLightNames)
+      ->add_option(
+          "--environment", arguments->environment,
+          std::string("an HDR or EXR map, twice as wide as high, or a named light: ") + kLightNames)
       ->required();
-  command->add_option("-o,--output", arguments->output, "folder of the results; NAME-relit");
+  command->add_option("-o,--output", arguments->output, "output folder [NAME-relit]");
   command
       ->add_option("--rotate", arguments->rotate,
-                   "degrees by which the environment is turned about the vertical")
+                   "rotation of the environment about the vertical axis, degrees")
       ->capture_default_str();
   command->add_option("--frames", arguments->frames,
-                      "of a film in which it turns round once (with ffmpeg)");
+                      "number of frames of a film of one full rotation; needs ffmpeg");
   command->add_option("--exposure", arguments->exposure,
-                      "stops of the PNG; default: bright parts just below white");
-  command->add_option("--truth", arguments->truth,
-                      "a picture directly under the environment, to tell the PSNR against");
-  command->add_option("--lights", arguments->olat.lights, "a light file, chrome, or auto")
-      ->capture_default_str();
+                      "exposure of the PNG in stops [bright parts just below white]");
+  command->add_option(
+      "--truth", arguments->truth,
+      "a picture rendered directly under the environment, to compute the PSNR against");
+  AddLightsOption(*command, arguments->olat);
   AddInputEncodingOption(*command, arguments->olat.encoding,
-                         "of the images: srgb, linear, or auto: 8 bits are srgb, all else is "
+                         "of the images: srgb, linear, or auto: 8-bit images as srgb, others as "
                          "linear");
-  command->add_option("--memory-mb", arguments->memory_mb, "for pixels")->capture_default_str();
+  command->add_option("--memory-mb", arguments->memory_mb, "memory for pixels")
+      ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "Examples:\n"

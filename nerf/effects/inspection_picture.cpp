@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "nerf/output/lettering.h"
+#include "nerf/output/draw_text.h"
 
 namespace nerf {
 namespace {
@@ -59,19 +59,19 @@ class Side {
     for (int line = 0; line <= kLines; ++line) {
       const double y = lowest_ + (highest_ - lowest_) * line / kLines;
       Fill(0, 1, y, y, std::fabs(y) < 1e-9 ? kAxis : kGrid);
-      WriteText(fmt::format("{:.3g}", std::fabs(y) < 1e-9 ? 0.0 : y), left_ - 8, Up(y) + 5, kLabel,
-                image_, TextAlign::kRight);
+      DrawText(fmt::format("{:.3g}", std::fabs(y) < 1e-9 ? 0.0 : y), left_ - 8, Up(y) + 5, kLabel,
+               image_, TextAlign::kRight);
     }
   }
   void Letters(const std::string& title, const std::string& below) {
-    WriteText(title, left_, kTop - 20, kTitle, image_);
-    WriteText(below, Across(0.5), kHeight - 14, kLabel, image_, TextAlign::kCenter);
+    DrawText(title, left_, kTop - 20, kTitle, image_);
+    DrawText(below, Across(0.5), kHeight - 14, kLabel, image_, TextAlign::kCenter);
   }
   void Tick(double x, const std::string& text) {
-    WriteText(text, Across(x), kTop + kSideHeight + 20, kLabel, image_, TextAlign::kCenter);
+    DrawText(text, Across(x), kTop + kSideHeight + 20, kLabel, image_, TextAlign::kCenter);
   }
   void Nothing(const std::string& why) {
-    WriteText(why, Across(0.5), kTop + kSideHeight / 2, kTitle, image_, TextAlign::kCenter);
+    DrawText(why, Across(0.5), kTop + kSideHeight / 2, kTitle, image_, TextAlign::kCenter);
   }
 
  private:

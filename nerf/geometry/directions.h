@@ -8,7 +8,8 @@
 
 namespace nerf {
 
-// Directions drawn from uniform numbers in [0,1)^2, and frames about a normal. All unit vectors.
+// Sampling of directions from uniform numbers in [0,1)^2, and frames of normals. All vectors are
+// unit.
 
 // Uniform over the sphere; density 1 / (4 pi).
 inline Eigen::Vector3d UniformOnSphere(const Eigen::Array2d& u) {
@@ -18,19 +19,20 @@ inline Eigen::Vector3d UniformOnSphere(const Eigen::Array2d& u) {
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-// About +z with density cos(theta) / pi. Source: Malley; points of a disc lifted to the hemisphere.
+// About +z with density cos(theta) / pi: points of a disc projected onto the hemisphere.
+// Source: Malley 1988.
 inline Eigen::Vector3d CosineOnHemisphere(const Eigen::Array2d& u) {
   const double r = std::sqrt(u.x());
   const double phi = 2 * std::numbers::pi * u.y();
   return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x())};
 }
 
-// The direction halfway between two; finite down to the last denormal, where both graze.
+// The half vector of two directions; finite even if both are grazing.
 inline Eigen::Vector3d HalfVector(const Eigen::Vector3d& w_o, const Eigen::Vector3d& w_i) {
   return (w_o + w_i).stableNormalized();
 }
 
-// The i-th of n directions spread evenly over the sphere.
+// The i-th of n directions that are spread evenly over the sphere.
 // Source: Gonzalez 2010, "Measurement of Areas on a Sphere Using Fibonacci Lattices".
 inline Eigen::Vector3d FibonacciDirection(int i, int n) {
   constexpr double kGoldenAngle = 2.399963229728653;
@@ -39,7 +41,7 @@ inline Eigen::Vector3d FibonacciDirection(int i, int n) {
   return {r * std::cos(kGoldenAngle * i), r * std::sin(kGoldenAngle * i), z};
 }
 
-// Axes with z along a normal: the columns of world_from_surface.
+// The rotation world_from_surface of a frame whose z axis is the normal.
 // Source: Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
 inline Eigen::Matrix3d WorldFromSurface(const Eigen::Vector3d& normal) {
   const double sign = std::copysign(1.0, normal.z());

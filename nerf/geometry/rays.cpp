@@ -12,11 +12,10 @@
 namespace nerf {
 
 void CheckCameraCentre(const Eigen::Vector3d& centre_in_normalized, const std::string& view) {
-  // Written so that what is no number does not pass.
+  // Written so that NaN does not pass.
   if (centre_in_normalized.lpNorm<1>() <= static_cast<double>(kFarthestOrigin)) return;
   throw InputError(
-      "{}: its camera stands {:.0e} times the size of the scene away from it; mend its pose or "
-      "unit",
+      "{}: the camera is {:.0e} times the size of the scene away from it; correct its pose or unit",
       view, centre_in_normalized.norm());
 }
 
@@ -36,8 +35,8 @@ void CheckRays(const RayBatch& rays) {
     const char* wrong = nullptr;
     const bool near = std::ranges::all_of(std::span(&rays.origin[3 * r], 3),
                                           [](float x) { return std::fabs(x) <= kFarthestOrigin; });
-    if (!near) wrong = "origin is not finite, or farther out than 1e9";
-    if (!(std::fabs(length - 1) <= 1e-3)) wrong = "direction is no unit vector";
+    if (!near) wrong = "origin is not finite, or beyond 1e9";
+    if (!(std::fabs(length - 1) <= 1e-3)) wrong = "direction is not a unit vector";
     if (!finite({&rays.background[3 * r], 3})) wrong = "background is not finite";
     if (!(rays.jitter[r] >= 0 && rays.jitter[r] <= 1)) wrong = "jitter is not in [0,1]";
     if (!rays.spread.empty() && !(rays.spread[r] >= 0 && std::isfinite(rays.spread[r]))) {

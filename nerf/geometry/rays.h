@@ -11,9 +11,9 @@ namespace nerf {
 struct RayBatch {
   std::vector<float> origin;      // [R,3]
   std::vector<float> direction;   // [R,3] unit vectors
-  std::vector<float> background;  // [R,3] what is seen where the ray meets nothing
-  std::vector<float> jitter;      // [R] in [0,1]: where in its first step each ray starts
-  // [R] width of a pixel at distance 1 along its ray, >= 0; empty: rays of no pixels.
+  std::vector<float> background;  // [R,3] the colour behind everything
+  std::vector<float> jitter;      // [R] in [0,1]: offset of the first sample in its step
+  // [R] width of a pixel at distance 1 along its ray, >= 0; empty: rays without a footprint.
   std::vector<float> spread;
 
   std::int64_t Size() const { return static_cast<std::int64_t>(jitter.size()); }
@@ -25,15 +25,15 @@ struct RayBatch {
   }
 };
 
-// The farthest that a ray may begin, in each coordinate: squares are then far from overflowing.
+// The largest coordinate of a ray origin; squares are then far from overflow.
 inline constexpr float kFarthestOrigin = 1e9f;
 
-// Throws InputError naming the view whose camera stands farther out.
+// Throws InputError naming the view if its camera is farther out than kFarthestOrigin.
 void CheckCameraCentre(const Eigen::Vector3d& centre_in_normalized, const std::string& view);
 
-// Throws std::invalid_argument with the index of the first ray that is none: a number that is not
-// finite, an origin beyond kFarthestOrigin, a direction that is no unit vector (to 1e-3), a jitter
-// outside [0,1]. What renders rays calls it once a batch.
+// Throws std::invalid_argument with the index of the first invalid ray: a value that is not finite,
+// an origin beyond kFarthestOrigin, a direction that is not a unit vector (to 1e-3), a jitter
+// outside [0,1]. Renderers call it once per batch.
 void CheckRays(const RayBatch& rays);
 
 }  // namespace nerf

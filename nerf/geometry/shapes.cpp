@@ -20,11 +20,12 @@ Vector3d WorldFromBoxDirection(const Box& box, const Vector3d& v) {
   return {h.x() * v.x() - h.y() * v.y(), h.y() * v.x() + h.x() * v.y(), v.z()};
 }
 
-std::optional<Intersection> Cross(const Sphere& sphere, const Ray& ray, double min_distance) {
+std::optional<Intersection> IntersectShape(const Sphere& sphere, const Ray& ray,
+                                           double min_distance) {
   const Vector3d to_center = sphere.center - ray.origin_in_world;
   const double nearest = to_center.dot(ray.direction_in_world);
-  const double miss2 = (to_center - nearest * ray.direction_in_world).squaredNorm();
-  const double half_chord2 = sphere.radius * sphere.radius - miss2;
+  const double distance2 = (to_center - nearest * ray.direction_in_world).squaredNorm();
+  const double half_chord2 = sphere.radius * sphere.radius - distance2;
   if (half_chord2 < 0) return std::nullopt;
   const double half_chord = std::sqrt(half_chord2);
   double distance = nearest - half_chord;
@@ -33,7 +34,7 @@ std::optional<Intersection> Cross(const Sphere& sphere, const Ray& ray, double m
   return Intersection{distance, (distance * ray.direction_in_world - to_center) / sphere.radius};
 }
 
-std::optional<Intersection> Cross(const Box& box, const Ray& ray, double min_distance) {
+std::optional<Intersection> IntersectShape(const Box& box, const Ray& ray, double min_distance) {
   const Vector3d o = BoxFromWorldDirection(box, ray.origin_in_world - box.center);
   const Vector3d d = BoxFromWorldDirection(box, ray.direction_in_world);
   double enter = -std::numeric_limits<double>::infinity();
@@ -59,7 +60,7 @@ std::optional<Intersection> Cross(const Box& box, const Ray& ray, double min_dis
   return Intersection{from_outside ? enter : leave, WorldFromBoxDirection(box, normal)};
 }
 
-std::optional<Intersection> Cross(const Disc& disc, const Ray& ray, double min_distance) {
+std::optional<Intersection> IntersectShape(const Disc& disc, const Ray& ray, double min_distance) {
   const Vector3d to_center = disc.center - ray.origin_in_world;
   const double dz = ray.direction_in_world.z();
   if (dz == 0) return std::nullopt;
@@ -78,7 +79,7 @@ Vector2d HeadingFromDegrees(double degrees) {
 }
 
 std::optional<Intersection> Intersect(const Shape& shape, const Ray& ray, double min_distance) {
-  return std::visit([&](const auto& s) { return Cross(s, ray, min_distance); }, shape);
+  return std::visit([&](const auto& s) { return IntersectShape(s, ray, min_distance); }, shape);
 }
 
 Vector3d ShapeFromWorld(const Shape& shape, const Vector3d& x_in_world) {

@@ -7,7 +7,7 @@
 namespace nerf {
 
 // Colour matching functions x, y, z of the CIE 1931 standard observer (2 degrees), at the
-// wavelengths of a Spectrum; y is also V, the eye's luminous efficiency.
+// wavelengths of a Spectrum; y is also V, the luminous efficiency of the eye.
 // Source: CIE 015:2018, table 5, rounded as in the files of colord.
 const std::array<std::array<double, 3>, Spectrum::kSamples>& MatchingFunctions();
 

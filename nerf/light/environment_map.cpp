@@ -17,28 +17,30 @@ using std::numbers::pi;
 
 void CheckRadiance(const Image& image, const std::string& name) {
   if (image.width != 2 * image.height || image.height < 1) {
-    throw InputError("{}: {} x {} pixels; an environment map is twice as wide as high", name,
+    throw InputError("{}: {} x {} pixels; an environment map must be twice as wide as high", name,
                      image.width, image.height);
   }
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const float value = image.pixels[i];
     if (value >= 0 && std::isfinite(value)) continue;
     const auto pixel = static_cast<int>(i / 3);
-    throw InputError("{}: the value at pixel ({}, {}) is {}; radiance is a number from 0 on", name,
-                     pixel % image.width, pixel / image.width, value);
+    throw InputError(
+        "{}: the value at pixel ({}, {}) is {}; radiance must be finite and not negative", name,
+        pixel % image.width, pixel / image.width, value);
   }
 }
 
-// Where u falls between the sums of `bins` weights, and how far into its bin, in [0,1).
-struct Place {
+// The bin of a piecewise constant distribution that u selects, and the position in it, in [0,1].
+//   cumulative  sums of the weights of the bins, [bins + 1]
+struct Selection {
   int bin;
   double within;
 };
-Place Find(const double* cumulative, int bins, double u) {
+Selection SelectBin(const double* cumulative, int bins, double u) {
   const double target = u * cumulative[bins];
   const double* above = std::upper_bound(cumulative + 1, cumulative + bins, target);
   auto bin = static_cast<int>(above - cumulative) - 1;
-  // u just below 1 can round to the end, where bins may be empty.
+  // u just below 1 may be rounded to the end, where bins can be empty.
   while (bin > 0 && cumulative[bin + 1] == cumulative[bin]) --bin;
   const double weight = cumulative[bin + 1] - cumulative[bin];
   return {bin, weight > 0 ? std::clamp((target - cumulative[bin]) / weight, 0.0, 1.0) : 0.5};
@@ -99,22 +101,24 @@ Color EnvironmentMap::Radiance(const Vector3d& direction) const {
   return At(x, y);
 }
 
-std::optional<EnvironmentMap::Sample> EnvironmentMap::Draw(const Eigen::Array2d& u) const {
+std::optional<EnvironmentMap::DirectionSample> EnvironmentMap::Sample(
+    const Eigen::Array2d& u) const {
   const double power = rows_.back();
   if (!(power > 0)) return std::nullopt;
-  const Place row = Find(rows_.data(), height(), u.y());
+  const Selection row = SelectBin(rows_.data(), height(), u.y());
   const auto stride = static_cast<std::size_t>(width()) + 1;
-  const Place column = Find(&columns_[static_cast<std::size_t>(row.bin) * stride], width(), u.x());
-  // Uniform over the patch: in phi and in cos(theta).
+  const Selection column =
+      SelectBin(&columns_[static_cast<std::size_t>(row.bin) * stride], width(), u.x());
+  // Uniform over the solid angle of the pixel: in phi and in cos(theta).
   const double above = std::cos(pi * row.bin / height());
   const double below = std::cos(pi * (row.bin + 1) / height());
   const double cos_theta = above + (below - above) * row.within;
   const double sin_theta = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
   const double phi = 2 * pi * ((column.bin + column.within) / width() - 0.5);
   const Color radiance = At(column.bin, row.bin);
-  return Sample{{sin_theta * std::sin(phi), cos_theta, -sin_theta * std::cos(phi)},
-                radiance,
-                Luminance(radiance) / power};
+  return DirectionSample{{sin_theta * std::sin(phi), cos_theta, -sin_theta * std::cos(phi)},
+                         radiance,
+                         Luminance(radiance) / power};
 }
 
 double EnvironmentMap::Pdf(const Vector3d& direction) const {

@@ -11,7 +11,7 @@
 namespace nerf {
 namespace {
 
-// The numbers of a line; nothing where one of its words is no finite number.
+// The numbers of a line, without its comment; nullopt if a word is not a finite number.
 std::optional<std::vector<double>> NumbersIn(const std::string& line) {
   std::istringstream words(line.substr(0, line.find('#')));
   std::vector<double> numbers;
@@ -27,13 +27,13 @@ std::optional<std::vector<double>> NumbersIn(const std::string& line) {
 DirectionalLight LightFrom(const std::vector<double>& numbers, const std::string& where) {
   const Eigen::Vector3d direction(numbers[0], numbers[1], numbers[2]);
   if (!(direction.norm() > 0)) {
-    throw InputError("{}: a light needs a direction, found 0 0 0", where);
+    throw InputError("{}: the direction of a light must not be 0 0 0", where);
   }
   DirectionalLight light{direction.stableNormalized()};
   if (numbers.size() == 4) light.irradiance *= numbers[3];
   if (numbers.size() == 6) light.irradiance *= Color(numbers[3], numbers[4], numbers[5]);
   if (!(light.irradiance > 0).all()) {
-    throw InputError("{}: a light's intensity must be above 0", where);
+    throw InputError("{}: the intensity of a light must be above 0", where);
   }
   return light;
 }
@@ -59,10 +59,10 @@ std::vector<DirectionalLight> ReadLights(const std::filesystem::path& file) {
     lights.push_back(LightFrom(*numbers, where));
   }
   if (announced && *announced != static_cast<double>(lights.size())) {
-    throw InputError("{}: its first line announces {} lights, {} follow; correct one of them",
+    throw InputError("{}: the first line announces {} lights, {} follow; correct one of them",
                      file.string(), *announced, lights.size());
   }
-  if (lights.empty()) throw InputError("{}: holds no lights", file.string());
+  if (lights.empty()) throw InputError("{}: contains no lights", file.string());
   return lights;
 }
 

@@ -9,7 +9,7 @@ namespace nerf {
 namespace {
 
 constexpr std::string_view kBlackBody = "blackbody:";
-// Temperatures of the daylight series were named before c2 was measured anew.
+// The names of daylights are from before c2 was revised.
 constexpr double kDaylightScale = 1.4388 / 1.4380;
 
 std::optional<double> NumberFrom(std::string_view text) {
@@ -26,8 +26,8 @@ void CheckTemperature(std::string_view name, double kelvin, double lowest, doubl
 
 Color OfUnitLuminance(const Spectrum& spectrum) {
   const Eigen::Vector3d xyz = XyzFromSpectrum(spectrum);
-  const Color inside = LinearSrgbFromXyz(xyz / xyz.y()).max(0);
-  return inside / Luminance(inside);
+  const Color in_gamut = LinearSrgbFromXyz(xyz / xyz.y()).max(0);
+  return in_gamut / Luminance(in_gamut);
 }
 
 }  // namespace

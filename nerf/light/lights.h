@@ -7,30 +7,30 @@
 
 namespace nerf {
 
-// Light from infinitely far away.
+// A light at infinity.
 struct DirectionalLight {
   Eigen::Vector3d to_light = Eigen::Vector3d::UnitZ();   // unit, from the subject to the light
   Color irradiance = Color::Constant(std::numbers::pi);  // on a surface that faces it; W / m^2
 };
 
-// Light from a point, alike to all sides.
+// An isotropic point light.
 struct PointLight {
   Eigen::Vector3d x_in_world = Eigen::Vector3d::Zero();
   Color intensity = Color::Ones();  // W / sr
 };
 
-// What arrives at x from a point light: its direction, distance, and the irradiance on a surface
-// there that faces it, I / d^2. `x_in_world` must not be the light's own place.
-struct ArrivingLight {
+// The light of a point light at x: its direction and distance, and the irradiance on a surface that
+// faces it, I / d^2. `x_in_world` must not be the position of the light.
+struct IncidentLight {
   Eigen::Vector3d to_light;  // unit
   double distance = 0;
   Color irradiance;
 };
-inline ArrivingLight Arriving(const PointLight& light, const Eigen::Vector3d& x_in_world) {
-  const Eigen::Vector3d way = light.x_in_world - x_in_world;
-  const double distance2 = way.squaredNorm();
+inline IncidentLight IncidentFrom(const PointLight& light, const Eigen::Vector3d& x_in_world) {
+  const Eigen::Vector3d to_light = light.x_in_world - x_in_world;
+  const double distance2 = to_light.squaredNorm();
   const double distance = std::sqrt(distance2);
-  return {way / distance, distance, light.intensity / distance2};
+  return {to_light / distance, distance, light.intensity / distance2};
 }
 
 }  // namespace nerf

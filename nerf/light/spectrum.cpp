@@ -7,14 +7,14 @@
 namespace nerf {
 namespace {
 
-constexpr double kReference = 560;  // nm, where illuminants are normalised
+constexpr double kReference = 560;  // nm; illuminants are normalised there
 
 // Planck's law relative to its value at the reference wavelength.
 //   c2  second radiation constant, m K
 Spectrum Planck(double kelvin, double c2, double at_reference) {
   const auto law = [&](double nm) {
     const double meters = nm * 1e-9;
-    // exp(-x) / (1 - exp(-x)) does not overflow for cold bodies.
+    // In the form exp(-x) / (1 - exp(-x)), which does not overflow at low temperatures.
     const double x = c2 / (meters * kelvin);
     return std::pow(nm, -5) * std::exp(-x + c2 / (kReference * 1e-9 * kelvin)) / -std::expm1(-x);
   };

@@ -7,8 +7,8 @@
 
 namespace nerf {
 
-// A spectral power distribution, sampled where people see: 380 to 780 nm every 5 nm. Any unit per
-// nanometre; products and sums are by wavelength.
+// A spectral power distribution over the visible range, sampled at 380 to 780 nm every 5 nm. The
+// unit, per nanometre, is arbitrary.
 struct Spectrum {
   static constexpr int kSamples = 81;
   static constexpr double kFirst = 380;  // nm
@@ -19,26 +19,27 @@ struct Spectrum {
   static double Wavelength(int i) { return kFirst + kStep * i; }  // nm
 };
 
-// Equal energy: 1 everywhere.
+// Equal energy: 1 at all wavelengths.
 Spectrum EqualEnergy();
 
 // A black body, 1 at 560 nm. Source: Planck 1900 with c2 = 0.014388 m K (CODATA).
 //   kelvin  above 0
 Spectrum BlackBody(double kelvin);
 
-// The CIE's standard illuminant A, an incandescent lamp, 100 at 560 nm: a black body of 2848 K with
-// c2 = 0.01435 m K by its definition, which is one of 2856 K with today's. Source: CIE 015:2018.
+// Standard illuminant A of the CIE, an incandescent lamp, 100 at 560 nm: by definition a black body
+// of 2848 K with c2 = 0.01435 m K, which is 2856 K with the current value. Source: CIE 015:2018.
 Spectrum IlluminantA();
 
 // Daylight of a correlated colour temperature, 100 at 560 nm. Source: Judd et al. 1964; CIE
-// 015:2018, eqs. 4.7 to 4.11. D65 is that of 6504 K, as c2 was 0.01438 when it was defined.
+// 015:2018, eqs. 4.7 to 4.11. D65 is daylight of 6504 K, because c2 was 0.01438 when it was
+// defined.
 //   kelvin  4000 to 25000
 Spectrum Daylight(double kelvin);
 
-// The CIE 1931 tristimulus values: sums of the spectrum times x, y, z over wavelengths, times 5 nm.
+// CIE 1931 tristimulus values: the integrals of the spectrum times x, y, z over wavelength.
 Eigen::Vector3d XyzFromSpectrum(const Spectrum& spectrum);
 
-// Linear sRGB of tristimulus values (white D65 with Y = 1 is 1 1 1); negative outside its gamut.
+// Linear sRGB from tristimulus values (D65 with Y = 1 is 1 1 1); negative outside the gamut.
 // Source: IEC 61966-2-1.
 Color LinearSrgbFromXyz(const Eigen::Vector3d& xyz);
 

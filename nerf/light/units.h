@@ -7,7 +7,7 @@
 
 namespace nerf {
 
-// Radiometric to photometric units and back: what a lamp's box says, and what a meter says.
+// Conversions between radiometric and photometric units.
 
 inline constexpr double kPlanck = 6.62607015e-34;     // J s, exact (SI 2019)
 inline constexpr double kSpeedOfLight = 299792458.0;  // m / s, exact
@@ -20,10 +20,10 @@ inline double PhotonEnergy(double nanometers) {
   return kPlanck * kSpeedOfLight / (nanometers * 1e-9);
 }
 
-// Lumens that one watt of light between 380 and 780 nm of this spectrum makes; 0 for no light.
+// Luminous efficacy of radiation of a spectrum between 380 and 780 nm, lm / W; 0 if it is all 0.
 double LuminousEfficacy(const Spectrum& spectrum);
 
-// Luminous flux of radiant flux, and back. Watts are those of the light between 380 and 780 nm.
+// Luminous flux from radiant flux between 380 and 780 nm, and the inverse.
 inline double LumensFromWatts(double watts, const Spectrum& spectrum) {
   return watts * LuminousEfficacy(spectrum);
 }
@@ -31,11 +31,11 @@ inline double WattsFromLumens(double lumens, const Spectrum& spectrum) {
   return lumens / LuminousEfficacy(spectrum);
 }
 
-// Luminous intensity of a lamp alike to all sides, and back: cd = lm / sr.
+// Luminous intensity of an isotropic lamp, cd = lm / sr, and the inverse.
 inline double CandelaFromLumens(double lumens) { return lumens / (4 * std::numbers::pi); }
 inline double LumensFromCandela(double candela) { return candela * 4 * std::numbers::pi; }
 
-// The factor of an exposure in stops: each doubles.
+// The factor of an exposure in stops, 2^stops.
 inline double FactorFromStops(double stops) { return std::exp2(stops); }
 
 }  // namespace nerf

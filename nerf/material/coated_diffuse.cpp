@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kStrata = 64;  // of visible normals in each of two dimensions, for a table entry
+constexpr int kStrata = 64;  // for a table entry, in each of the two dimensions of visible normals
 
 double Fresnel(double F0, double cosine) { return SchlickFresnel(Color::Constant(F0), cosine).x(); }
 
-// Directional albedo of the facets: the mean of F G2 / G1 over visible normals.
+// The directional albedo of the facets: the mean of F G2 / G1 over visible normals.
 double DirectionalAlbedo(const Ggx& facets, double F0, double n_dot_v) {
   const double mu = std::max(n_dot_v, 1e-6);
   const Vector3d w_o(std::sqrt(1 - mu * mu), 0, mu);
@@ -44,8 +44,8 @@ CoatedDiffuse::CoatedDiffuse(const Color& albedo, double refractive_index, doubl
     const double root = static_cast<double>(i) / kTable;
     reflectance_[static_cast<std::size_t>(i)] = DirectionalAlbedo(facets_, F0_, root * root);
   }
-  // 2 integral of E(mu) mu dmu over the table's own interpolation, so that what the base gets is
-  // what the coat leaves: with mu = t^2 the integrand is 4 E t^3 dt.
+  // 2 integral of E(mu) mu dmu; with mu = t^2 the integrand is 4 E t^3 dt. E is interpolated from
+  // the table as in Eval, so that energy is conserved exactly.
   constexpr int kSteps = 4096;
   for (int s = 0; s < kSteps; ++s) {
     const double t = (s + 0.5) / kSteps;
@@ -54,10 +54,10 @@ CoatedDiffuse::CoatedDiffuse(const Color& albedo, double refractive_index, doubl
 }
 
 double CoatedDiffuse::CoatReflectance(double n_dot_w) const {
-  const double place = std::sqrt(std::clamp(n_dot_w, 0.0, 1.0)) * kTable;
-  const int i = std::min(static_cast<int>(place), kTable - 1);
+  const double position = std::sqrt(std::clamp(n_dot_w, 0.0, 1.0)) * kTable;
+  const int i = std::min(static_cast<int>(position), kTable - 1);
   const double* entry = &reflectance_[static_cast<std::size_t>(i)];
-  return entry[0] + (entry[1] - entry[0]) * (place - i);
+  return entry[0] + (entry[1] - entry[0]) * (position - i);
 }
 
 Color CoatedDiffuse::Eval(const Vector3d& w_o, const Vector3d& w_i) const {
@@ -70,7 +70,7 @@ Color CoatedDiffuse::Eval(const Vector3d& w_o, const Vector3d& w_i) const {
   return coat + albedo_ * base;
 }
 
-double CoatedDiffuse::ShareOfCoat(double n_dot_v) const {
+double CoatedDiffuse::CoatProbability(double n_dot_v) const {
   const double coat = CoatReflectance(n_dot_v);
   const double base = (1 - coat) * Luminance(albedo_);
   return coat / std::max(coat + base, 1e-12);
@@ -80,7 +80,7 @@ std::optional<BrdfSample> CoatedDiffuse::Sample(const Vector3d& w_o,
                                                 const Eigen::Array3d& u) const {
   if (w_o.z() <= 0) return std::nullopt;
   Vector3d w_i;
-  if (u.z() < ShareOfCoat(w_o.z())) {
+  if (u.z() < CoatProbability(w_o.z())) {
     const Vector3d h = facets_.SampleVisibleNormal(w_o, u.head<2>());
     w_i = (2 * w_o.dot(h) * h - w_o).normalized();
   } else {
@@ -92,8 +92,8 @@ std::optional<BrdfSample> CoatedDiffuse::Sample(const Vector3d& w_o,
 
 double CoatedDiffuse::Pdf(const Vector3d& w_o, const Vector3d& w_i) const {
   if (w_o.z() <= 0 || w_i.z() <= 0) return 0;
-  const double share = ShareOfCoat(w_o.z());
-  return share * facets_.MirroredPdf(w_o, w_i) + (1 - share) * w_i.z() / std::numbers::pi;
+  const double coat = CoatProbability(w_o.z());
+  return coat * facets_.MirroredPdf(w_o, w_i) + (1 - coat) * w_i.z() / std::numbers::pi;
 }
 
 }  // namespace nerf

@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Mean reflectance of the boundary for diffuse light from within.
+// Mean reflectance of the boundary for diffuse light from inside.
 // Source: Groenhuis et al. 1983, by Jensen et al. 2001.
 double DiffuseFresnel(double eta) {
   return -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta;

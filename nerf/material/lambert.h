@@ -4,7 +4,7 @@
 
 namespace nerf {
 
-// A matt surface: f_r = albedo / pi, the same from everywhere. Source: Lambert 1760.
+// A diffuse surface: f_r = albedo / pi. Source: Lambert 1760.
 class Lambert : public Brdf {
  public:
   // albedo  in [0,1]

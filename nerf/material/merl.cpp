@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 static_assert(std::endian::native == std::endian::little, "MERL files are little endian");
 
 using std::numbers::pi;
-constexpr double kScale[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};  // of the stored numbers
+constexpr double kScale[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};  // of the stored values
 constexpr std::size_t kHeader = 3 * sizeof(std::int32_t);
 
 Vector3d RotatedAboutY(const Vector3d& v, double angle) {
@@ -40,31 +40,31 @@ std::size_t BinIndex(int theta_h, int theta_d, int phi_d) {
          phi_d;
 }
 
-// theta_h at a place on the axis of bins, counted in bins.
-double ThetaHAt(double place) {
-  const double root = place / MerlBrdf::kThetaH;
+// theta_h at a position on the axis of bins, in units of bins.
+double ThetaHAt(double position) {
+  const double root = position / MerlBrdf::kThetaH;
   return root * root * pi / 2;
 }
 
-// The two bins whose middles lie around a place, and the weight of the upper one.
-struct Between {
+// The two bins whose centres enclose a position, and the weight of the upper one.
+struct Interpolation {
   int lower, upper;
   double weight;
 };
-Between Clamped(double place, int count) {
-  const double p = std::clamp(place - 0.5, 0.0, count - 1.0);
+Interpolation Clamped(double position, int count) {
+  const double p = std::clamp(position - 0.5, 0.0, count - 1.0);
   const int lower = std::min(static_cast<int>(p), count - 2);
   return {lower, lower + 1, p - lower};
 }
-Between Periodic(double place, int count) {
-  const double p = place - 0.5;
+Interpolation Periodic(double position, int count) {
+  const double p = position - 0.5;
   const int lower = static_cast<int>(std::floor(p));
   return {(lower + count) % count, (lower + 1) % count, p - lower};
 }
 
 }  // namespace
 
-RusinkiewiczAngles AnglesOf(const Vector3d& w_o, const Vector3d& w_i) {
+RusinkiewiczAngles RusinkiewiczFromDirections(const Vector3d& w_o, const Vector3d& w_i) {
   const Vector3d h = HalfVector(w_o, w_i);
   const double theta_h = std::atan2(std::hypot(h.x(), h.y()), h.z());
   const double phi_h = std::atan2(h.y(), h.x());
@@ -75,7 +75,7 @@ RusinkiewiczAngles AnglesOf(const Vector3d& w_o, const Vector3d& w_i) {
   return {theta_h, std::atan2(std::hypot(d.x(), d.y()), d.z()), phi_d};
 }
 
-DirectionPair DirectionsOf(const RusinkiewiczAngles& angles) {
+DirectionPair DirectionsFromRusinkiewicz(const RusinkiewiczAngles& angles) {
   const double s = std::sin(angles.theta_d);
   const Vector3d d(s * std::cos(angles.phi_d), s * std::sin(angles.phi_d),
                    std::cos(angles.theta_d));
@@ -87,14 +87,14 @@ MerlBrdf::MerlBrdf(std::vector<Color> bins) : bins_(std::move(bins)) {
   for (int i = 0; i < kThetaH; ++i) {
     double brightness = 0;
     int measured = 0;
-    for (int j = 0; j < kThetaD / 2; ++j) {  // grazing differences are bright with Fresnel alone
+    for (int j = 0; j < kThetaD / 2; ++j) {  // beyond, Fresnel reflection dominates
       const Color& bin = bins_[BinIndex(i, j, kPhiD / 2)];
       if (bin.minCoeff() < 0) continue;
       brightness += Luminance(bin);
       ++measured;
     }
     brightness = brightness / std::max(1, measured) + 1e-9;
-    // What a ring of half vectors weighs: brightness, foreshortening, its solid angle.
+    // The weight of a ring of half vectors: brightness, foreshortening and solid angle.
     const double begin = ThetaHAt(i);
     const double end = ThetaHAt(i + 1);
     const double ring = std::sin(end) * std::sin(end) - std::sin(begin) * std::sin(begin);
@@ -110,11 +110,11 @@ MerlBrdf MerlBrdf::Read(const std::filesystem::path& file) {
   std::int32_t sizes[3] = {};
   if (bytes.size() >= kHeader) std::memcpy(sizes, bytes.data(), kHeader);
   if (bytes.size() < kHeader || sizes[0] != kThetaH || sizes[1] != kThetaD || sizes[2] != kPhiD) {
-    throw InputError("{}: no MERL BRDF: its sizes are {} x {} x {}, expected 90 x 90 x 180",
+    throw InputError("{}: not a MERL BRDF: the sizes are {} x {} x {}, expected 90 x 90 x 180",
                      file.string(), sizes[0], sizes[1], sizes[2]);
   }
   if (bytes.size() != kExpected) {
-    throw InputError("{}: {} bytes instead of the {} of a MERL BRDF; copy it once more",
+    throw InputError("{}: {} bytes instead of the {} of a MERL BRDF; copy the file again",
                      file.string(), bytes.size(), kExpected);
   }
   std::vector<Color> bins(kBins);
@@ -134,14 +134,14 @@ MerlBrdf MerlBrdf::Read(const std::filesystem::path& file) {
   return MerlBrdf(std::move(bins));
 }
 
-MerlBrdf MerlBrdf::Measure(const Brdf& brdf) {
+MerlBrdf MerlBrdf::Tabulate(const Brdf& brdf) {
   std::vector<Color> bins(kBins);
   for (int i = 0; i < kThetaH; ++i) {
     for (int j = 0; j < kThetaD; ++j) {
       for (int k = 0; k < kPhiD; ++k) {
         const RusinkiewiczAngles angles{ThetaHAt(i + 0.5), (j + 0.5) * pi / 2 / kThetaD,
                                         (k + 0.5) * pi / kPhiD};
-        const auto [w_o, w_i] = DirectionsOf(angles);
+        const auto [w_o, w_i] = DirectionsFromRusinkiewicz(angles);
         const bool above = w_o.z() > 0 && w_i.z() > 0;
         bins[BinIndex(i, j, k)] = above ? brdf.Eval(w_o, w_i) : Color::Constant(-1);
       }
@@ -167,10 +167,10 @@ void MerlBrdf::Write(const std::filesystem::path& file) const {
 
 Color MerlBrdf::Eval(const Vector3d& w_o, const Vector3d& w_i) const {
   if (w_o.z() <= 0 || w_i.z() <= 0) return Color::Zero();
-  const RusinkiewiczAngles angles = AnglesOf(w_o, w_i);
-  const Between h = Clamped(std::sqrt(angles.theta_h / (pi / 2)) * kThetaH, kThetaH);
-  const Between d = Clamped(angles.theta_d / (pi / 2) * kThetaD, kThetaD);
-  const Between phi = Periodic(angles.phi_d / pi * kPhiD, kPhiD);
+  const RusinkiewiczAngles angles = RusinkiewiczFromDirections(w_o, w_i);
+  const Interpolation h = Clamped(std::sqrt(angles.theta_h / (pi / 2)) * kThetaH, kThetaH);
+  const Interpolation d = Clamped(angles.theta_d / (pi / 2) * kThetaD, kThetaD);
+  const Interpolation phi = Periodic(angles.phi_d / pi * kPhiD, kPhiD);
   Color sum = Color::Zero();
   double weights = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -194,7 +194,7 @@ double MerlBrdf::HalfVectorDensity(const Vector3d& h) const {
   const double begin = std::sin(ThetaHAt(i));
   const double end = std::sin(ThetaHAt(i + 1));
   const auto* mass = &cumulative_[static_cast<std::size_t>(i)];
-  // Within a ring sin^2 is uniform, which is density cos(theta) over solid angle.
+  // Within a ring sin^2(theta) is uniform, so that the density over solid angle is cos(theta).
   return (mass[1] - mass[0]) * h.z() / (pi * (end * end - begin * begin));
 }
 

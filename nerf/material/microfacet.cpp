@@ -10,11 +10,11 @@ namespace nerf {
 
 using Eigen::Vector3d;
 
-Ggx::Ggx(double alpha) : alpha_(std::clamp(alpha, kSmoothest, 1.0)) {}
+Ggx::Ggx(double alpha) : alpha_(std::clamp(alpha, kMinAlpha, 1.0)) {}
 
 double Ggx::NormalDensity(const Vector3d& h) const {
-  // alpha^2 / (pi (cos^2 (alpha^2 - 1) + 1)^2) with 1 - cos^2 as x^2 + y^2, which keeps its digits
-  // where a narrow lobe needs them.
+  // alpha^2 / (pi (cos^2 (alpha^2 - 1) + 1)^2) with 1 - cos^2 written as x^2 + y^2, which avoids
+  // cancellation in narrow lobes.
   const double a2 = alpha_ * alpha_;
   const double spread = h.x() * h.x() + h.y() * h.y() + a2 * h.z() * h.z();
   return a2 / (std::numbers::pi * spread * spread);
@@ -33,7 +33,7 @@ double Ggx::Masking(double n_dot_w) const {
 }
 
 Vector3d Ggx::SampleVisibleNormal(const Vector3d& w_o, const Eigen::Array2d& u) const {
-  // Stretched so that the landscape is one of hemispheres, of which a disc is seen.
+  // Stretch, so that the visible normals are those of a hemisphere, whose projection is a disc.
   const Vector3d v = Vector3d(alpha_ * w_o.x(), alpha_ * w_o.y(), w_o.z()).normalized();
   const double across = v.x() * v.x() + v.y() * v.y();
   const Vector3d t1 =

@@ -4,29 +4,28 @@
 
 namespace nerf {
 
-// A rough surface as a landscape of tiny mirrors: the distribution of their normals h by
-// Trowbridge and Reitz 1975 (GGX of Walter et al. 2007), shadowing and masking by Smith,
-// height-correlated (Heitz 2014, eq. 99), Fresnel's reflectance by Schlick 1994.
-//   alpha  roughness in [kSmoothest, 1]; the width of the lobe. Below kSmoothest a lobe is narrower
-//          than rounding in its half vector, so that is the limit for a mirror.
-// Arguments stand in the frame of the surface, see Brdf. Finite for every alpha in range and every
-// pair of directions, n . v -> 0 too.
+// The microfacet distribution GGX: normals h by Trowbridge and Reitz 1975 (Walter et al. 2007),
+// height-correlated shadowing and masking by Smith (Heitz 2014, eq. 99).
+//   alpha  roughness, clamped to [kMinAlpha, 1]. Below kMinAlpha the lobe is narrower than the
+//          rounding error of the half vector
+// Directions are in the frame of the surface, see Brdf. Finite for all directions, including
+// grazing ones.
 class Ggx {
  public:
-  static constexpr double kSmoothest = 1e-3;
+  static constexpr double kMinAlpha = 1e-3;
 
   explicit Ggx(double alpha);
 
   // D(h), 1 / sr: integrates with cos(theta_h) to 1.
   double NormalDensity(const Eigen::Vector3d& h) const;
-  // G2 / (4 n.l n.v): what a microfacet model multiplies D and F with.
+  // G2 / (4 n.l n.v), the factor of D and F in a microfacet BRDF.
   double Visibility(double n_dot_l, double n_dot_v) const;
-  // G1(w): share of the facets towards w that w sees.
+  // G1(w): the fraction of the facets facing w that are visible from w.
   double Masking(double n_dot_w) const;
-  // A normal that w_o sees, with density D_v(h) = G1 max(0, w_o . h) D(h) / (n . w_o).
+  // Draws a normal visible from w_o, with density D_v(h) = G1 max(0, w_o . h) D(h) / (n . w_o).
   // Source: Heitz 2018, "Sampling the GGX Distribution of Visible Normals".
   Eigen::Vector3d SampleVisibleNormal(const Eigen::Vector3d& w_o, const Eigen::Array2d& u) const;
-  // The density with which mirroring w_o at such a normal gives w_i: D_v(h) / (4 w_o . h), 1 / sr.
+  // The density of the reflection w_i of w_o at such a normal, D_v(h) / (4 w_o . h), 1 / sr.
   double MirroredPdf(const Eigen::Vector3d& w_o, const Eigen::Vector3d& w_i) const;
 
  private:
@@ -36,10 +35,12 @@ class Ggx {
 // F = F0 + (1 - F0) (1 - cos)^5. Source: Schlick 1994.
 Color SchlickFresnel(const Color& F0, double cosine);
 
-// A rough metal: f_r = D G2 F / (4 n.l n.v), facets met once (Cook and Torrance 1982).
+// A rough metal: f_r = D G2 F / (4 n.l n.v), without multiple scattering between facets.
+// Source: Cook and Torrance 1982.
 class Conductor : public Brdf {
  public:
-  // F0  reflectance at normal incidence, in [0,1]: the colour of the metal
+  // F0     reflectance at normal incidence, in [0,1]: the colour of the metal
+  // alpha  see Ggx
   Conductor(const Color& F0, double alpha) : F0_(F0), facets_(alpha) {}
 
   Color Eval(const Eigen::Vector3d& w_o, const Eigen::Vector3d& w_i) const override;

@@ -25,7 +25,7 @@ void Check(const PosedImages& images, int frames) {
     throw InputError("frames {}: give 1 to {}", frames, kMaxFrames);
   }
   if (images.images.empty()) {
-    throw InputError("{}: holds no cameras to lead a path along", images.source.string());
+    throw InputError("{}: contains no cameras for a path", images.source.string());
   }
 }
 
@@ -39,10 +39,10 @@ Camera WithoutDistortion(const PosedImages& images) {
           .params = {focal, focal, center.x(), center.y()}};
 }
 
-// pose_at(t) for `frames` values of t from 0 to 1. A closed path, where 1 is 0 again, stops short
-// of 1 by one step, so that a film of it repeats smoothly.
+// Whether the last pose is one step before the first, so that a film of the path loops smoothly.
 enum class Ending { kClosed, kOpen };
 
+// pose_at(t) for `frames` values of t from 0 to 1, excluding 1 for a closed path.
 template <class PoseAt>
 CameraPath Sample(const PosedImages& images, int frames, Ending ending, PoseAt pose_at) {
   CameraPath path;
@@ -56,7 +56,7 @@ CameraPath Sample(const PosedImages& images, int frames, Ending ending, PoseAt p
   return path;
 }
 
-// What the cameras have in common.
+// Statistics of the cameras; world frame.
 struct Rig {
   Vector3d focus;
   Vector3d up;
@@ -88,7 +88,7 @@ Isometry3d FromParts(const Eigen::Matrix3d& rotation, const Vector3d& center) {
   return world_from_camera;
 }
 
-// The cameras that a path leads through, by name.
+// The poses that a path passes through, sorted by name.
 std::vector<Isometry3d> TrainingPoses(const PosedImages& images) {
   std::vector<const PosedImage*> chosen;
   for (const PosedImage& image : images.images) {
@@ -97,7 +97,7 @@ std::vector<Isometry3d> TrainingPoses(const PosedImages& images) {
     }
   }
   if (chosen.empty()) {
-    throw InputError("{}: all images are held out, none to lead a path through",
+    throw InputError("{}: all images are held out; a path needs training images",
                      images.source.string());
   }
   std::ranges::sort(chosen, {}, &PosedImage::name);
@@ -113,22 +113,22 @@ Vector3d CatmullRom(const Vector3d& p0, const Vector3d& p1, const Vector3d& p2, 
                 t * t * t * (3 * p1 - p0 - 3 * p2 + p3));
 }
 
-// Rotation vector of the turn from a to b, the short way round.
-Vector3d Turn(const Quaterniond& a, const Quaterniond& b) {
+// The rotation vector from a to b, by the shorter way.
+Vector3d RotationVector(const Quaterniond& a, const Quaterniond& b) {
   const Eigen::AngleAxisd turn(a.conjugate() * b);
   return turn.angle() * turn.axis();
 }
 
-// Shoemake's inner control point beside `here`, which makes the speed continuous there.
+// The inner control point of Shoemake 1987 at `here`, for a continuous angular velocity.
 Quaterniond ControlPoint(const Quaterniond& before, const Quaterniond& here,
                          const Quaterniond& after) {
-  const Vector3d bend = -0.25 * (Turn(here, before) + Turn(here, after));
+  const Vector3d bend = -0.25 * (RotationVector(here, before) + RotationVector(here, after));
   const double angle = bend.norm();
   if (angle == 0) return here;
   return here * Quaterniond(Eigen::AngleAxisd(angle, bend / angle));
 }
 
-// Keys before the first and after the last repeat the end.
+// The i-th key, repeating the first and the last beyond the ends.
 template <class T>
 const T& Clamped(const std::vector<T>& keys, std::ptrdiff_t i) {
   return keys[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, std::ssize(keys) - 1))];
@@ -190,7 +190,7 @@ CameraPath SpiralPath(const PosedImages& images, const SceneNormalization& norma
     widths[axis] = ValueOfRank(offsets[axis], offsets[axis].size() * 9 / 10);
   }
   double depth = (rig.focus - rig.mean_center).dot(forward);
-  // Cameras that look outwards have no common focus before them: look far ahead of the spiral.
+  // Cameras that look outwards have no common focus in front of them; use a point far ahead.
   if (rig.looks_outwards || !(depth > 0)) depth = std::max(1e-6, 10 * widths.norm());
   const Vector3d focus = rig.mean_center + depth * forward;
   return Sample(images, frames, Ending::kClosed, [&](double t) {

@@ -25,7 +25,7 @@ void AppendNumbers(const json& value, const std::string& where, std::vector<doub
     return;
   }
   if (!value.is_array() || value.size() > 16) {
-    throw InputError("{}: must hold 16 or 12 numbers, row by row", where);
+    throw InputError("{}: must contain 16 or 12 numbers, row by row", where);
   }
   for (const json& entry : value) {
     if (entry.is_array() && !entry.empty() && entry.front().is_array()) {
@@ -42,7 +42,7 @@ Eigen::Isometry3d WorldFromCamera(const JsonFields& fields, std::string_view key
   std::vector<double> numbers;
   AppendNumbers(*value, where, &numbers);
   if (numbers.size() != 16 && numbers.size() != 12) {
-    throw InputError("{}: holds {} numbers, give 16 or 12, row by row", where, numbers.size());
+    throw InputError("{}: contains {} numbers, give 16 or 12, row by row", where, numbers.size());
   }
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -141,7 +141,7 @@ PathPose ReadPose(const std::filesystem::path& json_path, const PosedImages& ima
   const json root = ReadJsonFile(json_path);
   const JsonFields pose(root, json_path.string() + ": ");
   if (images.images.empty()) {
-    throw InputError("{}: holds no camera", images.source.string());
+    throw InputError("{}: contains no camera", images.source.string());
   }
   const Camera& first = images.cameras[images.images.front().camera];
   PathPose result{.world_from_camera = WorldFromCamera(

@@ -6,7 +6,7 @@
 
 #include "nerf/image/image_convert.h"
 #include "nerf/output/color_map.h"
-#include "nerf/output/lettering.h"
+#include "nerf/output/draw_text.h"
 
 namespace nerf {
 namespace {
@@ -37,7 +37,7 @@ void Paste(const Image& tile, int left, int top, Image& sheet) {
 Image ContactSheet(std::span<const ContactSheetRow> rows) {
   std::vector<Tiles> tiles;
   int tile_width = 0;
-  const int caption_height = CanLetter() ? kCaptionHeight : 0;
+  const int caption_height = HasFont() ? kCaptionHeight : 0;
   int height = kGap;
   for (const ContactSheetRow& row : rows) {
     tiles.push_back({Fitted(OnWhite(row.truth)), Fitted(OnWhite(row.rendering)),
@@ -51,7 +51,7 @@ Image ContactSheet(std::span<const ContactSheetRow> rows) {
   std::ranges::fill(sheet.pixels, 1.0f);
   int top = kGap;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    WriteText(rows[i].caption, kGap, top + kFontSize, kFontSize, sheet);
+    DrawText(rows[i].caption, kGap, top + kFontSize, kFontSize, sheet);
     top += caption_height;
     for (int k = 0; k < kTiles; ++k) {
       Paste(tiles[i][k], kGap + k * (tile_width + kGap), top, sheet);

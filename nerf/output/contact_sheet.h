@@ -14,12 +14,11 @@ struct ContactSheetRow {
   Image rendering;
 };
 
-// Truth, rendering and their difference (ColorizeError) side by side, a row a picture, on white; no
-// wider than 2000 pixels: larger pictures are reduced by a whole factor. Captions stand above
-// their row where a common font is installed (DejaVu Sans, Liberation Sans, Arial), else they are
-// left out.
-//   returns  3 channels, sRGB; without rows an empty image
-// Throws InputError where the pictures of a row differ in size.
+// Truth, rendering and their difference (ColorizeError) side by side, one row for each pair, on
+// white. At most 2000 pixels wide; larger pictures are reduced by a whole factor. Captions are
+// above their rows, and omitted if no font is found (HasFont).
+//   returns  3 channels, sRGB; an empty image if there are no rows
+// Throws InputError if the pictures of a row differ in size.
 Image ContactSheet(std::span<const ContactSheetRow> rows);
 
 }  // namespace nerf

@@ -32,7 +32,7 @@ struct Capture {
 
 // Renders one view.
 //   samples_per_pixel  rays averaged in linear light, spread evenly over the pixel
-//   seed               of the places of the rays in the pixels; views should differ in it
+//   seed               of the positions of the rays in the pixels; views should differ in it
 // Throws InputError if the camera has no ray for a pixel.
 View RenderView(const Scene& scene, const Camera& camera,
                 const Eigen::Isometry3d& world_from_camera, int samples_per_pixel, unsigned seed,

@@ -29,7 +29,7 @@ using Eigen::Vector3d;
 constexpr double kRadius = 0.33;  // of a ball, scene units
 constexpr double kMillimetersAcross =
     12;                                // of the marble ball: small, so that light passes through
-constexpr int kPlaces = 4;             // in a pixel
+constexpr int kPositions = 4;          // in a pixel
 constexpr int kPathsWithBounces = 16;  // in each place, under one light
 
 // A file that marks a folder as a light-stage capture that may be replaced.
@@ -118,8 +118,8 @@ Image RenderUnder(SurfaceScene& subject, const DirectionalLight& light, const St
   subject.directional_lights = {light};
   subject.environment = nullptr;
   RenderSettings settings;
-  settings.places = kPlaces;
-  settings.paths_per_place = terms.bounces > 0 ? kPathsWithBounces : 1;
+  settings.positions = kPositions;
+  settings.paths_per_position = terms.bounces > 0 ? kPathsWithBounces : 1;
   // A different seed for each light, so that the noise of the bounces averages out.
   settings.seed = Mix64(std::bit_cast<std::uint64_t>(light.to_light.y()));
   return RenderScene(subject, terms, camera.camera, camera.world_from_camera, settings).color;
@@ -131,8 +131,8 @@ SceneRendering RenderUnder(SurfaceScene& subject, std::shared_ptr<const Environm
   subject.directional_lights.clear();
   subject.environment = std::move(environment);
   RenderSettings settings;
-  settings.places = kPlaces;
-  settings.paths_per_place = paths;
+  settings.positions = kPositions;
+  settings.paths_per_position = paths;
   return RenderScene(subject, terms, camera.camera, camera.world_from_camera, settings, "direct",
                      keep_on);
 }

@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-constexpr int kEnvironmentDraws = 2048;  // for the irradiance at a point of a translucent sphere
-constexpr std::uint64_t kTranslucent = 0x7472616e736c7563;  // a stream of its own
+constexpr int kEnvironmentSamples = 2048;                   // at each point of a translucent sphere
+constexpr std::uint64_t kTranslucent = 0x7472616e736c7563;  // a separate random stream
 
 double PowerHeuristic(double pdf, double other) {
   const double a = pdf * pdf;
@@ -27,7 +27,7 @@ bool IsLit(const SurfaceScene& scene) {
 
 }  // namespace
 
-// A surface point on a path, with what the BRDF needs.
+// A surface point on a path, with the frame of its BRDF.
 struct PathTracer::Vertex {
   explicit Vertex(const SurfaceHit& surface_hit, const Vector3d& towards_viewer)
       : hit(surface_hit),
@@ -56,7 +56,7 @@ PathTracer::PathTracer(const SurfaceScene& scene, const TransportTerms& terms, s
     has_emitters_ = has_emitters_ || !surface.emission.isZero(0);
     if (!surface.subsurface || !terms.direct || !IsLit(scene)) continue;
     const Dipole& dipole = surface.subsurface->dipole();
-    exitance_[&surface] = SubsurfaceSphere::Light(
+    exitance_[&surface] = SubsurfaceSphere::Illuminate(
         surface.subsurface, [&](int point, const Vector3d& x, const Vector3d& normal) -> Color {
           const SurfaceHit hit{&surface, 0, x, normal};
           const Vertex vertex(hit, normal);
@@ -64,22 +64,22 @@ PathTracer::PathTracer(const SurfaceScene& scene, const TransportTerms& terms, s
           Color sum = Color::Zero();
           const auto add = [&](const Vector3d& to_light, double distance, const Color& light) {
             const double cosine = normal.dot(to_light);
-            if (cosine <= 0 || !Reaches(vertex, to_light, distance, rays)) return;
+            if (cosine <= 0 || !IsUnoccluded(vertex, to_light, distance, rays)) return;
             sum += light * (cosine * dipole.Transmittance(cosine));
           };
           for (const auto& light : scene_.directional_lights) {
             add(light.to_light, kFar, light.irradiance);
           }
           for (const auto& light : scene_.point_lights) {
-            const ArrivingLight arriving = Arriving(light, x);
-            add(arriving.to_light, arriving.distance, arriving.irradiance);
+            const IncidentLight incident = IncidentFrom(light, x);
+            add(incident.to_light, incident.distance, incident.irradiance);
           }
           if (scene_.environment) {
             UniformStream random(seed, kTranslucent, static_cast<std::uint64_t>(point));
-            for (int i = 0; i < kEnvironmentDraws; ++i) {
-              const auto drawn = scene_.environment->Draw(random.Next2());
+            for (int i = 0; i < kEnvironmentSamples; ++i) {
+              const auto drawn = scene_.environment->Sample(random.Next2());
               if (!drawn) break;
-              add(drawn->direction, kFar, drawn->radiance / (drawn->pdf * kEnvironmentDraws));
+              add(drawn->direction, kFar, drawn->radiance / (drawn->pdf * kEnvironmentSamples));
             }
           }
           return sum;
@@ -87,31 +87,33 @@ PathTracer::PathTracer(const SurfaceScene& scene, const TransportTerms& terms, s
   }
 }
 
-bool PathTracer::Reaches(const Vertex& vertex, const Vector3d& direction, double distance,
-                         std::int64_t& rays) const {
+bool PathTracer::IsUnoccluded(const Vertex& vertex, const Vector3d& direction, double distance,
+                              std::int64_t& rays) const {
   if (!terms_.shadows) return true;
   ++rays;
   return !IsBlocked(scene_.surfaces, {vertex.hit.x_in_world, direction}, distance);
 }
 
-// f_r L_i cos(theta) of lights, and of the environment as far as it is drawn by itself.
-Color PathTracer::LightsAt(const Vertex& vertex, UniformStream& random, std::int64_t& rays) const {
+// The direct light of all lights, and one sample of the environment, weighted for multiple
+// importance sampling.
+Color PathTracer::DirectLight(const Vertex& vertex, UniformStream& random,
+                              std::int64_t& rays) const {
   const Brdf& brdf = *vertex.hit.item->brdf;
   Color sum = Color::Zero();
   const auto add = [&](const Vector3d& to_light, double distance, const Color& light) {
     const Vector3d w_i = vertex.ToSurface(to_light);
     if (w_i.z() <= 0) return;
     const Color f = brdf.Eval(vertex.w_o, w_i);
-    if (f.isZero(0) || !Reaches(vertex, to_light, distance, rays)) return;
+    if (f.isZero(0) || !IsUnoccluded(vertex, to_light, distance, rays)) return;
     sum += f * light * w_i.z();
   };
   for (const auto& light : scene_.directional_lights) add(light.to_light, kFar, light.irradiance);
   for (const auto& light : scene_.point_lights) {
-    const ArrivingLight arriving = Arriving(light, vertex.hit.x_in_world);
-    add(arriving.to_light, arriving.distance, arriving.irradiance);
+    const IncidentLight incident = IncidentFrom(light, vertex.hit.x_in_world);
+    add(incident.to_light, incident.distance, incident.irradiance);
   }
   if (scene_.environment) {
-    if (const auto drawn = scene_.environment->Draw(random.Next2())) {
+    if (const auto drawn = scene_.environment->Sample(random.Next2())) {
       const double other = brdf.Pdf(vertex.w_o, vertex.ToSurface(drawn->direction));
       add(drawn->direction, kFar,
           drawn->radiance * (PowerHeuristic(drawn->pdf, other) / drawn->pdf));
@@ -123,7 +125,7 @@ Color PathTracer::LightsAt(const Vertex& vertex, UniformStream& random, std::int
 Color PathTracer::Radiance(Ray ray, UniformStream& random, std::int64_t& rays) const {
   Color radiance = Color::Zero();
   Color throughput = Color::Ones();
-  double brdf_pdf = 0;  // with which the last surface chose the ray
+  double brdf_pdf = 0;  // density of the ray, from the last BRDF
   const EnvironmentMap* environment = scene_.environment.get();
   const auto environment_by_brdf = [&](const Vector3d& direction, double pdf) -> Color {
     return environment->Radiance(direction) * PowerHeuristic(pdf, environment->Pdf(direction));
@@ -148,9 +150,9 @@ Color PathTracer::Radiance(Ray ray, UniformStream& random, std::int64_t& rays) c
       radiance += throughput * lit->second.Radiance(hit->x_in_world, vertex.w_o.z());
     }
     if (!hit->item->brdf) return radiance;
-    radiance += throughput * LightsAt(vertex, random, rays);
+    radiance += throughput * DirectLight(vertex, random, rays);
 
-    // The next ray: light that the environment or an emitter sends from there, and bounces.
+    // The next ray samples the environment, emitters and indirect light by the BRDF.
     const bool needs_ray =
         depth < terms_.bounces || has_emitters_ || (environment && terms_.shadows);
     if (!needs_ray && !environment) return radiance;

@@ -9,19 +9,19 @@
 
 namespace nerf {
 
-// Which terms of the rendering equation are computed; one that is off costs no ray.
+// The terms of the rendering equation that are computed; disabled terms cost no rays.
 //   L_o = L_e + integral of f_r L_i cos(theta) d omega      (Kajiya 1986)
 struct TransportTerms {
-  bool emission = true;  // what a camera sees shine: emitters and the environment behind all
-  bool direct = true;    // the light of lights, environment and emitters, reflected once
-  bool shadows = true;   // off: lights and environment shine through surfaces (emitters do not)
-  int bounces = 1;       // further surfaces that light may visit on its way, 0 to 100; needs direct
+  bool emission = true;  // emitters and environment as the camera sees them
+  bool direct = true;    // reflected light from lights, environment and emitters
+  bool shadows = true;   // off: lights and environment (but not emitters) pass through surfaces
+  int bounces = 1;       // of indirect light, 0 to 100; needs `direct`
 
-  // Throws InputError, naming the flag, where a value is out of range.
+  // Throws InputError, naming the flag, if a value is out of range.
   void Check() const;
 };
 
-// Uniform numbers in [0,1) without hidden state: functions of a key (a pixel's sample).
+// A stream of uniform numbers in [0,1) that depends on its key alone.
 class UniformStream {
  public:
   UniformStream(std::uint64_t seed, std::uint64_t pixel, std::uint64_t sample)
@@ -35,27 +35,26 @@ class UniformStream {
   std::uint64_t count_ = 0;
 };
 
-// Estimates radiance along rays by paths from the camera. Lights and the environment are drawn at
-// each surface, the environment also by the BRDF's own directions, weighted by the power heuristic
-// (Veach 1997); emitters are found by those alone.
-// A translucent body is lit once, when the tracer is made, by the lights and the environment alone:
-// light that other surfaces bounce to it, or that emitters send, does not enter it, so with bounces
-// it is a little too dark beside bright neighbours. Its own light does reach the others.
+// Estimates radiance by tracing paths from the camera (Kajiya 1986). At each surface all lights are
+// evaluated; the environment is sampled both by its luminance and by the BRDF, combined with the
+// power heuristic (Veach 1997); emitters are found by BRDF samples alone.
+// Translucent spheres are lit once, in the constructor, by lights and environment. Emitters and
+// indirect light do not light them, so that with bounces they are slightly too dark next to bright
+// surfaces; the light that they emit reaches other surfaces.
 class PathTracer {
  public:
-  // Keeps references to the scene. Lights the translucent surfaces now.
-  // Throws InputError where the terms are out of range.
+  // Keeps a reference to the scene. Throws InputError if the terms are out of range.
   PathTracer(const SurfaceScene& scene, const TransportTerms& terms, std::uint64_t seed = 0);
 
-  // One path. The mean over draws of `random` is the radiance that arrives at the ray's origin.
-  //   rays  grows by the rays that were traced
+  // Traces one path. The expected value over `random` is the radiance at the origin of the ray.
+  //   rays  is increased by the number of rays traced
   Color Radiance(Ray ray, UniformStream& random, std::int64_t& rays) const;
 
  private:
   struct Vertex;
-  Color LightsAt(const Vertex& vertex, UniformStream& random, std::int64_t& rays) const;
-  bool Reaches(const Vertex& vertex, const Eigen::Vector3d& direction, double distance,
-               std::int64_t& rays) const;
+  Color DirectLight(const Vertex& vertex, UniformStream& random, std::int64_t& rays) const;
+  bool IsUnoccluded(const Vertex& vertex, const Eigen::Vector3d& direction, double distance,
+                    std::int64_t& rays) const;
 
   const SurfaceScene& scene_;
   TransportTerms terms_;

@@ -12,12 +12,12 @@
 namespace nerf {
 
 struct RenderSettings {
-  int places = 4;            // within each pixel, the same in each pixel, 1..64
-  int paths_per_place = 16;  // 1..1,000,000
-  double stop_at_noise = 0;  // relative; ends earlier where it is reached; 0: all paths
+  int positions = 4;            // within each pixel, the same in all pixels, 1..64
+  int paths_per_position = 16;  // 1..1,000,000
+  double stop_at_noise = 0;     // stops early when `noise` is as low; 0: never
   std::uint64_t seed = 0;
 
-  // Throws InputError, naming the value, where it is out of range.
+  // Throws InputError, naming the value, if it is out of range.
   void Check() const;
 };
 
@@ -29,12 +29,11 @@ struct SceneRendering {
   bool finished = true;  // not stopped by keep_on
 };
 
-// Renders a scene by paths, in passes of one path a place, on several threads. Long renders show
-// progress with the noise that is left. The same settings give the same pixels whatever the number
-// of threads.
-//   title    of the progress line; empty: none
-//   keep_on  asked between passes; false ends the render with what there is
-// Throws InputError: settings out of range, a pixel for which the camera has no ray.
+// Renders a scene by path tracing, in passes of one path for each position in a pixel, on several
+// threads. The pixels depend on the settings alone, not on the number of threads.
+//   title    of the progress line, which also shows the noise; empty: no progress line
+//   keep_on  called between passes; false ends the rendering with the passes so far
+// Throws InputError if settings are out of range or the camera has no ray for a pixel.
 SceneRendering RenderScene(
     const SurfaceScene& scene, const TransportTerms& terms, const Camera& camera,
     const Eigen::Isometry3d& world_from_camera, const RenderSettings& settings,

@@ -14,10 +14,10 @@ using Eigen::Vector3d;
 
 using std::numbers::pi;
 constexpr int kPoints = 1000;
-constexpr double kLookupReach = 2.5;  // of a lookup, in distances between points
+constexpr double kLookupRadius = 2.5;  // relative to the mean distance of neighbouring points
 
-// Mean of R_d over a patch, a disc of radius rho about the point itself: the profile is steep
-// there, and a midpoint would not see it. Rings of equal area, each met in its middle.
+// The mean of R_d over the patch of a point, a disc of radius rho about it. R_d is steep there, so
+// that its value at the centre would not do; uses rings of equal area.
 Color MeanOverOwnPatch(const Dipole& dipole, double rho) {
   constexpr int kRings = 64;
   Color sum = Color::Zero();
@@ -45,7 +45,7 @@ SubsurfaceSphere::SubsurfaceSphere(const Sphere& sphere, const Medium& medium)
   });
 }
 
-SubsurfaceSphere::Exitance SubsurfaceSphere::Light(
+SubsurfaceSphere::Exitance SubsurfaceSphere::Illuminate(
     std::shared_ptr<const SubsurfaceSphere> sphere,
     const std::function<Color(int, const Vector3d&, const Vector3d&)>& irradiance) {
   std::vector<Eigen::Array3f> incident(kPoints);
@@ -75,13 +75,13 @@ Color SubsurfaceSphere::UniformReflectance() const {
 }
 
 Color SubsurfaceSphere::Exitance::At(const Vector3d& x_in_world) const {
-  // A smooth mean of the points nearby: weights (1 - d^2 / reach^2)^2, with d^2 = 2 - 2 cos.
+  // Weighted mean of the nearby points with weights (1 - d^2 / radius^2)^2, d^2 = 2 - 2 cos.
   const Vector3d normal = (x_in_world - sphere_->sphere_.center).normalized();
-  const double reach2 = kLookupReach * kLookupReach * 4 * pi / kPoints;
+  const double radius2 = kLookupRadius * kLookupRadius * 4 * pi / kPoints;
   Color sum = Color::Zero();
   double weights = 0;
   for (std::size_t i = 0; i < values_.size(); ++i) {
-    const double near = 1 - (2 - 2 * normal.dot(sphere_->normals_[i])) / reach2;
+    const double near = 1 - (2 - 2 * normal.dot(sphere_->normals_[i])) / radius2;
     if (near <= 0) continue;
     sum += near * near * values_[i];
     weights += near * near;

@@ -10,17 +10,18 @@
 
 namespace nerf {
 
-// Light through a translucent sphere: its irradiance at points spread evenly over it, spread by the
-// dipole, looked up anywhere in between. The dipole's plane is bent onto the sphere; distances are
-// straight. Source: Jensen and Buhler 2002, without their hierarchy: there are few points.
+// Subsurface scattering in a translucent sphere: irradiance at evenly spread points is convolved
+// with the dipole and interpolated between them. The dipole is derived for a plane; here its
+// distances are straight lines between points of the sphere. Source: Jensen and Buhler 2002,
+// without their hierarchy, as there are few points.
 class SubsurfaceSphere {
  public:
   SubsurfaceSphere(const Sphere& sphere, const Medium& medium);
 
-  // Radiant exitance at the points, and how to look it up.
+  // Radiant exitance at the points, under some illumination.
   class Exitance {
    public:
-    // Light that leaves at a point of the sphere, W / m^2, before its boundary.
+    // Radiant exitance at a point of the sphere, below the boundary, W / m^2.
     Color At(const Eigen::Vector3d& x_in_world) const;
     // Radiance towards a viewer: exitance F_t(n . w_o) / pi.
     Color Radiance(const Eigen::Vector3d& x_in_world, double n_dot_v) const;
@@ -31,15 +32,15 @@ class SubsurfaceSphere {
     std::vector<Color> values_;
   };
 
-  // The dipole's share of irradiance.
-  //   irradiance  at point i, at x with unit normal n: integral of F_t(n . w) L(w) n . w over the
-  //               hemisphere; called from several threads
-  static Exitance Light(std::shared_ptr<const SubsurfaceSphere> sphere,
-                        const std::function<Color(int i, const Eigen::Vector3d& x_in_world,
-                                                  const Eigen::Vector3d& normal)>& irradiance);
+  // Computes the exitance.
+  //   irradiance  below the boundary at point i, at x with unit normal n: the integral of
+  //               F_t(n . w) L(w) n . w over the hemisphere; called from several threads
+  static Exitance Illuminate(std::shared_ptr<const SubsurfaceSphere> sphere,
+                             const std::function<Color(int i, const Eigen::Vector3d& x_in_world,
+                                                       const Eigen::Vector3d& normal)>& irradiance);
 
   const Dipole& dipole() const { return dipole_; }
-  // Sum of a point's row: exitance under uniform irradiance of 1.
+  // Exitance under a uniform irradiance of 1.
   Color UniformReflectance() const;
 
  private:

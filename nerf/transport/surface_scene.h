@@ -11,22 +11,23 @@
 
 namespace nerf {
 
-// A surface and what it does with light. Boxes and discs have two sides that are alike.
+// A surface with its material. Both sides of a disc, and the inside of boxes and spheres, reflect
+// as the outside does.
 struct Surface {
   Shape shape;
-  std::shared_ptr<const Brdf> brdf = nullptr;  // none: reflects nothing
-  Color emission = Color::Zero();              // radiance, to all sides
-  // Light that enters a translucent sphere, the same as `shape`, and leaves it elsewhere; none:
-  // no light does. Its boundary mirrors nothing unless there is a brdf for that.
+  std::shared_ptr<const Brdf> brdf = nullptr;  // nullptr: reflects nothing
+  Color emission = Color::Zero();              // radiance, in all directions
+  // Subsurface scattering, for a sphere that must equal `shape`; nullptr: none. The boundary itself
+  // reflects only if there is a brdf.
   std::shared_ptr<const SubsurfaceSphere> subsurface = nullptr;
 };
 
-// A scene of analytic surfaces in the light.
+// A scene of analytic surfaces and its lights.
 struct SurfaceScene {
   std::vector<Surface> surfaces;
   std::vector<DirectionalLight> directional_lights;
   std::vector<PointLight> point_lights;
-  std::shared_ptr<const EnvironmentMap> environment;  // nullptr: darkness
+  std::shared_ptr<const EnvironmentMap> environment;  // nullptr: black
 };
 
 using SurfaceHit = Hit<Surface>;

@@ -16,8 +16,7 @@
 namespace nerf::test {
 
 // Reads a binary little-endian PLY file of float positions, optional byte colours and triangles. It
-// follows the header rather than what WritePly is known to write; what it cannot read fails the
-// test.
+// relies on the header alone; unexpected content fails the test.
 inline Mesh ReadPly(const std::filesystem::path& file) {
   const std::string bytes = ReadWholeFile(file);
   const std::string end = "end_header\n";

@@ -6,7 +6,8 @@
 
 namespace nerf::test {
 
-// Soft light from above, a wide warm glow at one side, a cool one at the other.
+// An environment without sharp features: soft light from above, a warm glow on one side and a cool
+// glow on the other.
 inline EnvironmentMap SmoothEnvironment() {
   Image image(256, 128, 3, ColorEncoding::kLinear);
   const EnvironmentMap grid(image, "grid");

@@ -41,7 +41,7 @@ double Sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-TEST(LightVoronoi, CellsOfACubesCornersAndFacesAreAlike) {
+TEST(LightVoronoi, CellsOfSymmetricLightsAreEqual) {
   const std::vector<Vector3d> faces = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                        {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
   std::vector<Vector3d> corners;
@@ -57,8 +57,8 @@ TEST(LightVoronoi, CellsOfACubesCornersAndFacesAreAlike) {
   }
 }
 
-// Two lights share the sphere by the plane between them: a cap of known solid angle.
-TEST(LightVoronoi, TheEdgeOfACellLiesInTheMiddle) {
+// Two symmetric lights have cells of the same size.
+TEST(LightVoronoi, CellsMeetHalfwayBetweenLights) {
   const LightVoronoi cells(LightsAt({{0, 1, 0},
                                      {std::sin(1.0), std::cos(1.0), 0},
                                      {-std::sin(1.0), std::cos(1.0), 0},
@@ -69,7 +69,7 @@ TEST(LightVoronoi, TheEdgeOfACellLiesInTheMiddle) {
   EXPECT_NEAR(Sum(angles), 4 * pi, 1e-6);
 }
 
-TEST(LightVoronoi, OnAGridIsTheSinTerm) {
+TEST(LightVoronoi, GridCellsHaveTheSolidAngleOfTheSinTerm) {
   constexpr int kRows = 12;
   constexpr int kColumns = 24;
   const LightVoronoi cells(GridOfLights(kRows, kColumns), 240);
@@ -85,7 +85,7 @@ TEST(LightVoronoi, OnAGridIsTheSinTerm) {
   }
 }
 
-TEST(LightVoronoi, OfALatticeIsNoGrid) {
+TEST(LightVoronoi, AFibonacciLatticeIsNotAGrid) {
   std::vector<Vector3d> directions;
   for (int i = 0; i < 100; ++i) directions.push_back(FibonacciDirection(i, 100));
   const LightVoronoi cells(LightsAt(directions), 128);
@@ -93,8 +93,8 @@ TEST(LightVoronoi, OfALatticeIsNoGrid) {
   for (const double angle : cells.SolidAngles()) EXPECT_NEAR(angle, 4 * pi / 100, 0.02);
 }
 
-// What filtering is for: the light of a sun anywhere goes to the light beside it, all of it.
-TEST(LightVoronoi, NoSunIsLostBetweenTwoLights) {
+// All power of a small bright light, wherever it is, is assigned to a light.
+TEST(LightVoronoi, ASmallBrightLightIsNeverLostBetweenCells) {
   const auto lights = GridOfLights(6, 12);
   const LightVoronoi cells(lights, 64);
   for (int x = 0; x < 128; x += 7) {
@@ -110,8 +110,8 @@ TEST(LightVoronoi, NoSunIsLostBetweenTwoLights) {
   }
 }
 
-TEST(LightVoronoi, TurningTheEnvironmentTurnsItCounterClockwise) {
-  // Ahead (-z), to the left (-x), behind, right: seen from above that is counter-clockwise.
+TEST(LightVoronoi, RotatesTheEnvironmentCounterClockwise) {
+  // Ahead (-z), left (-x), behind, right: counter-clockwise as seen from above.
   const LightVoronoi cells(
       LightsAt({{0, 0, -1}, {-1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}}), 64);
   Image image(128, 64, 3, ColorEncoding::kLinear);
@@ -127,7 +127,7 @@ TEST(LightVoronoi, TurningTheEnvironmentTurnsItCounterClockwise) {
   EXPECT_TRUE((cells.Integrate(map, 360)[0] > 0).all());
 }
 
-// A map whose lower part (y < `above`) shines or does not.
+// A map with radiance 1 below y = `above`, and another radiance above.
 EnvironmentMap LitBelow(double above, float radiance_above) {
   Image image(128, 64, 3, ColorEncoding::kLinear);
   const EnvironmentMap grid(image, "grid");
@@ -148,35 +148,35 @@ std::vector<DirectionalLight> Lattice(int count, double lowest) {
   return LightsAt(directions);
 }
 
-// Nobody photographed the subject lit from below: no image may stand for that.
-TEST(LightVoronoi, LeavesOutTheLightOfWhereThereAreNoLights) {
+// No image shows the subject lit from below, so that no image may be used for such light.
+TEST(LightVoronoi, IgnoresDirectionsFarFromAllLights) {
   const LightVoronoi dome(Lattice(400, 0.3), 64);  // above 17 degrees
   const EnvironmentMap below = LitBelow(-0.3, 0);
   for (const Color& weight : dome.Integrate(below)) EXPECT_TRUE(weight.isZero(0));
-  EXPECT_EQ(dome.ShareLeftOut(below), 1);
-  EXPECT_NEAR(dome.ShareLeftOut(LitBelow(2, 1)), 0.5, 0.15);
-  // All that is near the lights is kept.
+  EXPECT_EQ(dome.UncoveredFraction(below), 1);
+  EXPECT_NEAR(dome.UncoveredFraction(LitBelow(2, 1)), 0.5, 0.15);
+  // Light from near the lights is kept.
   Image image(128, 64, 3, ColorEncoding::kLinear);
   std::fill_n(image.At(3, 5), 3, 1.0f);
   const EnvironmentMap sun(image, "sun");
-  EXPECT_EQ(dome.ShareLeftOut(sun), 0);
-  EXPECT_EQ(dome.ShareLeftOut(EnvironmentMap::Uniform(Color::Zero())), 0);
+  EXPECT_EQ(dome.UncoveredFraction(sun), 0);
+  EXPECT_EQ(dome.UncoveredFraction(EnvironmentMap::Uniform(Color::Zero())), 0);
 }
 
-TEST(LightVoronoi, LightsAllAroundLeaveOutNothing) {
+TEST(LightVoronoi, LightsOnTheWholeSphereCoverAllDirections) {
   const EnvironmentMap all = EnvironmentMap::Uniform(Color::Ones());
   for (const int count : {3, 4, 5, 7, 12, 62, 250, 1000}) {
-    EXPECT_EQ(LightVoronoi(Lattice(count, -1), 64).ShareLeftOut(all), 0) << count;
+    EXPECT_EQ(LightVoronoi(Lattice(count, -1), 64).UncoveredFraction(all), 0) << count;
   }
-  // Rows far apart, close within: still a grid.
-  EXPECT_EQ(LightVoronoi(GridOfLights(3, 72), 64).ShareLeftOut(all), 0);
-  // Each direction twice is no distance of 0.
+  // A grid with distant rows and close columns is still a grid.
+  EXPECT_EQ(LightVoronoi(GridOfLights(3, 72), 64).UncoveredFraction(all), 0);
+  // Duplicate directions do not count as neighbours at distance 0.
   std::vector<DirectionalLight> twice = Lattice(60, -1);
   twice.insert(twice.end(), twice.begin(), twice.end());
-  EXPECT_EQ(LightVoronoi(twice, 64).ShareLeftOut(all), 0);
+  EXPECT_EQ(LightVoronoi(twice, 64).UncoveredFraction(all), 0);
 }
 
-// A light by its name is a small map; its pixels are wider than the cells of a thousand lights.
+// The map of a named light is small; its pixels are larger than the cells of a thousand lights.
 TEST(LightVoronoi, CellsAreFinerThanACoarseMap) {
   EXPECT_EQ(CellRows(1000, 512), 512);
   EXPECT_EQ(CellRows(12, 32), 32);
@@ -194,7 +194,7 @@ TEST(LightVoronoi, CellsAreFinerThanACoarseMap) {
   EXPECT_NEAR(sum, 4 * pi, 1e-6);
 }
 
-TEST(LightVoronoi, OfNoLightsIsRefused) {
+TEST(LightVoronoi, NeedsLights) {
   EXPECT_THAT(test::InputErrorOf([] { LightVoronoi({}, 8); }), HasSubstr("no lights"));
 }
 

@@ -15,7 +15,7 @@ void Store(Image& normal, int x, int y, double nx, double ny, double nz) {
   pixel[2] = static_cast<float>(nz / length);
 }
 
-TEST(IntegrateNormals, OfAPlaneAreThePlane) {
+TEST(IntegrateNormals, ReconstructsAPlane) {
   Image normal(20, 15, 3, ColorEncoding::kLinear);
   for (int y = 0; y < 15; ++y) {
     for (int x = 0; x < 20; ++x) Store(normal, x, y, -0.3, 0.5, 1);
@@ -26,8 +26,8 @@ TEST(IntegrateNormals, OfAPlaneAreThePlane) {
   EXPECT_NEAR(*height.At(0, 14) - *height.At(0, 0), 14 * 0.5, 1e-4);
 }
 
-// A cap of a sphere with a hole in it; heights are compared up to their constant.
-TEST(IntegrateNormals, OfASphereAreTheSphereAndItsHoleStaysOne) {
+// A spherical cap with a hole; heights are compared up to a constant.
+TEST(IntegrateNormals, ReconstructsASphereWithAHole) {
   constexpr int kRadius = 60;
   Image normal(2 * kRadius + 1, 2 * kRadius + 1, 3, ColorEncoding::kLinear);
   const auto z_at = [](int x, int y) {
@@ -57,7 +57,7 @@ TEST(IntegrateNormals, OfASphereAreTheSphereAndItsHoleStaysOne) {
   EXPECT_LT(worst, 0.01 * kRadius);
 }
 
-TEST(IntegrateNormals, GivesPartsThatDoNotTouchAMeanOfZeroEach) {
+TEST(IntegrateNormals, SeparatePartsHaveAMeanOfZero) {
   Image normal(9, 4, 3, ColorEncoding::kLinear);
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 9; ++x) {

@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 constexpr const char* kThreeLights = "0 0 1\n1 0 1\n0 1 1\n";
 
-// A ball of 80 pixels that mirrors a small bright light, as seen from far away.
+// A ball, 80 pixels wide, that mirrors a small bright light, in orthographic projection.
 Image MirroringBall(const Vector3d& to_light) {
   Image photo(100, 90, 3, ColorEncoding::kLinear);
   for (int y = 0; y < 90; ++y) {
@@ -45,7 +45,7 @@ Image BallMask() {
   return mask;
 }
 
-TEST(ChromeBall, ShowsWhereTheLightIs) {
+TEST(ChromeBall, FindsTheDirectionOfTheLight) {
   const BallOutline ball = FindBall(BallMask(), "mask.png");
   EXPECT_NEAR(ball.center.x(), 48, 0.1);
   EXPECT_NEAR(ball.center.y(), 44, 0.1);
@@ -58,20 +58,20 @@ TEST(ChromeBall, ShowsWhereTheLightIs) {
   }
 }
 
-TEST(ChromeBall, ThatIsNoneIsNamed) {
+TEST(ChromeBall, RejectsInvalidMasksAndPhotographsByName) {
   EXPECT_THAT(test::InputErrorOf([] { FindBall(Image(50, 50, 3), "mask.png"); }),
               HasSubstr("mask.png"));
   Image square(50, 50, 3);
   for (int y = 10; y < 40; ++y) {
     for (int x = 10; x < 20; ++x) *square.At(x, y) = 1;
   }
-  EXPECT_THAT(test::InputErrorOf([&] { FindBall(square, "mask.png"); }), HasSubstr("no disc"));
+  EXPECT_THAT(test::InputErrorOf([&] { FindBall(square, "mask.png"); }), HasSubstr("not a disc"));
   const BallOutline ball{{25, 25}, 20};
   EXPECT_THAT(test::InputErrorOf([&] { LightFromHighlight(Image(50, 50, 3), ball, "b.png"); }),
               AllOf(HasSubstr("b.png"), HasSubstr("no highlight")));
 }
 
-TEST(OlatCapture, TakesImagesInTheOrderOfTheirNumbersAndKnowsTheMask) {
+TEST(OlatCapture, OrdersImagesByNumberAndFindsTheMask) {
   const test::ScratchFolder scratch;
   for (const char* name : {"a.10.png", "a.2.png", "a.1.png"}) scratch.WriteImage(name, 8, 6);
   scratch.WriteImage("a.mask.png", 8, 6);
@@ -86,7 +86,7 @@ TEST(OlatCapture, TakesImagesInTheOrderOfTheirNumbersAndKnowsTheMask) {
   EXPECT_EQ(capture.height, 6);
 }
 
-TEST(OlatCapture, FollowsAListBesideTheFolderAndLightsAboveIt) {
+TEST(OlatCapture, UsesAListAndLightsFromTheParentFolder) {
   const test::ScratchFolder scratch;
   for (const char* name : {"x.png", "y.png", "z.png"}) {
     scratch.WriteImage(std::filesystem::path("vase") / name, 8, 6);
@@ -101,7 +101,7 @@ TEST(OlatCapture, FollowsAListBesideTheFolderAndLightsAboveIt) {
   }
 }
 
-TEST(OlatCapture, FindsLightsOnAChromeBallWhereNoFileTellsThem) {
+TEST(OlatCapture, UsesTheChromeBallIfThereIsNoLightFile) {
   const test::ScratchFolder scratch;
   const std::vector<Vector3d> directions = {Vector3d(0, 0, 1), Vector3d(0.5, 0, 0.8).normalized(),
                                             Vector3d(0, 0.5, 0.8).normalized()};
@@ -117,7 +117,7 @@ TEST(OlatCapture, FindsLightsOnAChromeBallWhereNoFileTellsThem) {
   }
 }
 
-TEST(OlatCapture, HasItsNameFromWithinToo) {
+TEST(OlatCapture, HasTheNameOfItsFolderForRelativePaths) {
   const test::ScratchFolder scratch;
   for (const char* name : {"cup/1.png", "cup/2.png", "cup/3.png"}) scratch.WriteImage(name, 8, 6);
   scratch.Write("cup/lights.txt", kThreeLights);
@@ -131,23 +131,23 @@ TEST(OlatCapture, HasItsNameFromWithinToo) {
   }
 }
 
-TEST(OlatCapture, IsNoPlaceForItsResults) {
+TEST(OlatCapture, RejectsOutputInItsFolder) {
   const test::ScratchFolder scratch;
   for (const char* name : {"a/1.png", "a/2.png", "a/3.png"}) scratch.WriteImage(name, 8, 6);
   scratch.Write("a/lights.txt", kThreeLights);
   const OlatCapture capture = FindOlatCapture(scratch.path() / "a", {});
   for (const char* output : {"a", "a/", "a/../a"}) {
-    EXPECT_THAT(test::InputErrorOf([&] { RefuseAmongImages(capture, scratch.path() / output); }),
+    EXPECT_THAT(test::InputErrorOf([&] { CheckOutputFolder(capture, scratch.path() / output); }),
                 HasSubstr("--output"));
   }
   for (const char* output : {"b", "a/relit", "."}) {
-    EXPECT_EQ(test::InputErrorOf([&] { RefuseAmongImages(capture, scratch.path() / output); }),
+    EXPECT_EQ(test::InputErrorOf([&] { CheckOutputFolder(capture, scratch.path() / output); }),
               "no error");
   }
 }
 
-// What stands beside the images is looked at in the next run too.
-TEST(OlatCapture, IsNoPlaceForItsResultsWhereItIsFoundInASubFolder) {
+// The next run searches the folder that was given as well.
+TEST(OlatCapture, RejectsOutputInItsFoldersIfFoundInASubFolder) {
   const test::ScratchFolder scratch;
   for (const char* name : {"ph/cat/1.png", "ph/cat/2.png", "ph/cat/3.png", "ph/chrome/1.png"}) {
     scratch.WriteImage(name, 8, 6);
@@ -155,12 +155,12 @@ TEST(OlatCapture, IsNoPlaceForItsResultsWhereItIsFoundInASubFolder) {
   scratch.Write("ph/lights.txt", kThreeLights);
   const OlatCapture capture = FindOlatCapture(scratch.path() / "ph", {});
   for (const char* output : {"ph", "ph/", "ph/cat", "ph/chrome"}) {
-    EXPECT_THAT(test::InputErrorOf([&] { RefuseAmongImages(capture, scratch.path() / output); }),
+    EXPECT_THAT(test::InputErrorOf([&] { CheckOutputFolder(capture, scratch.path() / output); }),
                 AllOf(HasSubstr("--output"), HasSubstr(output)));
   }
 }
 
-TEST(OlatCapture, IsFoundAgainBesideItsResults) {
+TEST(OlatCapture, IgnoresFoldersOfResults) {
   const test::ScratchFolder scratch;
   for (const char* name : {"ph/cat/1.png", "ph/cat/2.png", "ph/cat/3.png"}) {
     scratch.WriteImage(name, 8, 6);
@@ -172,7 +172,7 @@ TEST(OlatCapture, IsFoundAgainBesideItsResults) {
   EXPECT_EQ(FindOlatCapture(scratch.path() / "ph", {}).name, "cat");
 }
 
-TEST(OlatCapture, ThatIsNoneIsRefusedWithWhatIsMissing) {
+TEST(OlatCapture, ErrorsNameWhatIsMissing) {
   const test::ScratchFolder scratch;
   const auto error = [&](const std::filesystem::path& folder) {
     return test::InputErrorOf([&] { FindOlatCapture(scratch.path() / folder, {}); });

@@ -32,8 +32,8 @@ Vector3d NormalAt(int x, int y) {
   return r2 < 1 ? Vector3d(nx, ny, std::sqrt(1 - r2)) : Vector3d::Zero();
 }
 
-// A coloured matt sphere under lights of different colours, as files.
-//   scale  of all values
+// Writes images of a coloured diffuse sphere under lights of different colours.
+//   scale  factor of all values
 void WriteSphereCapture(const std::filesystem::path& folder, const char* ending = ".exr",
                         float scale = 1) {
   std::vector<DirectionalLight> lights = test::RingOfLights(12, 45);
@@ -74,23 +74,23 @@ double MeanErrorOfSphere(const PhotometricMaps& maps) {
   return sum / count;
 }
 
-TEST(PhotometricMaps, OfASphereInFilesAreItsNormalsAndItsAlbedo) {
+TEST(PhotometricMaps, MatchASphereInFiles) {
   const test::ScratchFolder scratch;
   WriteSphereCapture(scratch.path());
   const auto capture = FindOlatCapture(scratch.path(), {});
   const auto maps = SolvePhotometricStereo(capture, InputEncoding::kAuto, {});
   EXPECT_LT(MeanErrorOfSphere(maps), 0.05);
-  EXPECT_EQ(maps.unknown_pixels, 0);
+  EXPECT_EQ(maps.unsolved_pixels, 0);
   const float* albedo = maps.albedo.At(kSize / 2 + 5, kSize / 2);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(albedo[c], kAlbedo[c], 1e-4);
   EXPECT_EQ(*maps.normal.At(0, 0), 0);
-  // Under the first light it is the first photograph again.
+  // Relit by the first light, it matches the first photograph.
   const Image relit = RelitByNormals(maps, capture.lights[0]);
   const Image photo = ReadImage(capture.images[0], true);
   EXPECT_NEAR(relit.At(kSize / 2, kSize / 2)[0], photo.At(kSize / 2, kSize / 2)[0], 1e-4);
 }
 
-TEST(PhotometricMaps, EightBitsCostLessThanADegree) {
+TEST(PhotometricMaps, AreWithinADegreeForEightBitImages) {
   const test::ScratchFolder scratch;
   WriteSphereCapture(scratch.path(), ".png");
   const OlatCapture capture = FindOlatCapture(scratch.path(), {});
@@ -115,7 +115,7 @@ TEST(PhotometricMaps, AreWrittenAsPicturesMeasurementsAndAMesh) {
   EXPECT_EQ(normals.pixels, maps.normal.pixels);
 }
 
-TEST(PhotometricMaps, RefuseBlackAndSaturatedImagesByName) {
+TEST(PhotometricMaps, RejectBlackAndSaturatedImagesByName) {
   const test::ScratchFolder scratch;
   WriteSphereCapture(scratch.path(), ".png");
   const auto error = [&] {
@@ -134,7 +134,7 @@ TEST(PhotometricMaps, RefuseBlackAndSaturatedImagesByName) {
   EXPECT_THAT(error(), AllOf(HasSubstr("mask.png"), HasSubstr("black")));
 }
 
-TEST(PhotometricMaps, InLittleMemoryAreTheSameInMoreParts) {
+TEST(PhotometricMaps, AreTheSameInLittleMemory) {
   const test::ScratchFolder scratch;
   WriteSphereCapture(scratch.path());
   const OlatCapture capture = FindOlatCapture(scratch.path(), {});
@@ -148,8 +148,8 @@ TEST(PhotometricMaps, InLittleMemoryAreTheSameInMoreParts) {
   EXPECT_EQ(parts.median_residual, whole.median_residual);
 }
 
-// Integers have a lowest and a highest value, floats a unit that nobody knows.
-TEST(PhotometricMaps, OfFloatsMayBeInAnyUnit) {
+// Integers can be saturated; floats have an arbitrary unit.
+TEST(PhotometricMaps, AcceptFloatsInAnyUnit) {
   for (const float scale : {1e-6f, 1.0f / 0.7f, 1e4f}) {
     const test::ScratchFolder scratch;
     WriteSphereCapture(scratch.path(), ".exr", scale);
@@ -157,15 +157,15 @@ TEST(PhotometricMaps, OfFloatsMayBeInAnyUnit) {
     options.method = StereoMethod::kLeastSquares;
     const auto maps =
         SolvePhotometricStereo(FindOlatCapture(scratch.path(), {}), InputEncoding::kAuto, options);
-    // Its brightest red is 1 in the second: left out as saturated, it would be another normal's.
+    // At the second scale the brightest red is 1, which must not be taken for saturated.
     const float* albedo = maps.albedo.At(kSize / 2, kSize / 2);
     EXPECT_NEAR(albedo[0] / scale, kAlbedo[0], 1e-4) << scale;
-    EXPECT_EQ(maps.unknown_pixels, 0) << scale;
+    EXPECT_EQ(maps.unsolved_pixels, 0) << scale;
   }
 }
 
-// A camera's raw files, which are linear light under whatever curve their decoder puts on it.
-TEST(PhotometricMaps, OfCameraRawAreThoseOfItsSensor) {
+// Camera raw files are linear, even though their decoder applies a transfer function.
+TEST(PhotometricMaps, ReadCameraRawAsLinearLight) {
   const test::ScratchFolder scratch;
   const auto lights = test::RingOfLights(12, 45);
   WriteLights(scratch.path() / "lights.txt", lights);
@@ -185,7 +185,7 @@ TEST(PhotometricMaps, OfCameraRawAreThoseOfItsSensor) {
 
 OlatCapture Cat() { return FindOlatCapture(std::string(NERF_TEST_DATA) + "/photometric", {}); }
 
-TEST(PhotometricMaps, TheCatsLightFileAgreesWithItsChromeBall) {
+TEST(PhotometricMaps, OfTheCatHaveLightsThatAgreeWithItsChromeBall) {
   const OlatCapture cat = Cat();
   ASSERT_EQ(cat.images.size(), 12u);
   EXPECT_EQ(cat.images[2].filename(), "cat.2.tga");
@@ -194,12 +194,13 @@ TEST(PhotometricMaps, TheCatsLightFileAgreesWithItsChromeBall) {
   for (int i = 0; i < 12; ++i) {
     sum += test::DegreesBetween(by_ball[i].to_light, cat.lights[i].to_light);
   }
-  std::cout << "lights.txt and chrome ball: " << sum / 12 << " degrees apart in the mean\n";
+  std::cout << "lights.txt and chrome ball: " << sum / 12 << " degrees apart on average\n";
   EXPECT_LT(sum / 12, 5);  // a mirrored axis would make it tens of degrees
 }
 
-// No truth is known of the cat; that a photograph left out is foretold is what can be measured.
-TEST(PhotometricMaps, OfTheCatForetellAPhotographThatWasLeftOut) {
+// There is no ground truth for the cat, but the prediction of a held-out photograph can be
+// measured.
+TEST(PhotometricMaps, OfTheCatPredictAHeldOutPhotograph) {
   OlatCapture cat = Cat();
   const auto light = cat.lights[4];
   const InputEncoding encoding = EncodingByResidual(cat);
@@ -216,9 +217,10 @@ TEST(PhotometricMaps, OfTheCatForetellAPhotographThatWasLeftOut) {
     error += std::abs(relit.pixels[i] - photo.pixels[i]);
     sum += photo.pixels[i];
   }
-  std::cout << "the cat's image 4, foretold from the others: " << 100 * error / sum << " % off\n";
+  std::cout << "image 4 of the cat, predicted from the others: " << 100 * error / sum
+            << " % error\n";
   EXPECT_LT(error / sum, 0.12);
-  EXPECT_LT(maps.unknown_pixels, maps.pixels / 100);
+  EXPECT_LT(maps.unsolved_pixels, maps.pixels / 100);
 }
 
 }  // namespace

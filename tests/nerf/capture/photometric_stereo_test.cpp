@@ -24,7 +24,7 @@ StereoOptions By(StereoMethod method) {
   return options;
 }
 
-// Mean angle between the estimated and the true normals, in degrees; says it, for the README.
+// The mean angle between estimated and true normals in degrees; also printed, for the README.
 double MeanError(const std::vector<DirectionalLight>& lights,
                  const std::vector<test::SpherePixel>& sphere, StereoMethod method,
                  const char* name) {
@@ -38,14 +38,14 @@ double MeanError(const std::vector<DirectionalLight>& lights,
   return mean;
 }
 
-TEST(PhotometricStereo, IsExactOnAMattSphereUnderTwelveLights) {
+TEST(PhotometricStereo, IsExactForADiffuseSphereUnderTwelveLights) {
   const auto lights = test::RingOfLights(12, 45);
   const auto sphere = test::LitSphere(lights, kGrey);
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kAuto, "no noise, auto"), 0.05);
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kRobust, "no noise, robust"), 0.05);
 }
 
-TEST(PhotometricStereo, LeastSquaresIsExactWhereEveryLightReachesTheSurface) {
+TEST(PhotometricStereo, LeastSquaresAreExactWithoutShadows) {
   const auto lights = test::RingOfLights(12, 45);
   const PhotometricSolver solver(lights, By(StereoMethod::kLeastSquares));
   int compared = 0;
@@ -60,8 +60,7 @@ TEST(PhotometricStereo, LeastSquaresIsExactWhereEveryLightReachesTheSurface) {
   EXPECT_GT(compared, 1000);
 }
 
-// The reason why there is a robust method at all.
-TEST(PhotometricStereo, SurvivesShadowsAndHighlightsThatMisleadLeastSquares) {
+TEST(PhotometricStereo, RobustMethodIgnoresShadowsAndHighlights) {
   const auto lights = test::RingOfLights(12, 45);
   const auto sphere = test::LitSphere(lights, kGrey, {.shadows = 0.1, .highlights = 0.1});
   const double plain = MeanError(lights, sphere, StereoMethod::kLeastSquares,
@@ -72,7 +71,7 @@ TEST(PhotometricStereo, SurvivesShadowsAndHighlightsThatMisleadLeastSquares) {
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kAuto, "20 % shadows and highlights, auto"), 1);
 }
 
-TEST(PhotometricStereo, SurvivesTwentyPerCentOfEitherKind) {
+TEST(PhotometricStereo, RobustMethodIgnoresTwentyPercentOfEitherKind) {
   const auto lights = test::RingOfLights(24, 45);
   EXPECT_LT(MeanError(lights, test::LitSphere(lights, kGrey, {.shadows = 0.2}),
                       StereoMethod::kRobust, "20 % shadows, 24 lights"),
@@ -82,14 +81,14 @@ TEST(PhotometricStereo, SurvivesTwentyPerCentOfEitherKind) {
             1);
 }
 
-TEST(PhotometricStereo, NoiseCostsRobustnessLittle) {
+TEST(PhotometricStereo, RobustMethodIsAccurateUnderNoise) {
   const auto lights = test::RingOfLights(12, 45);
   const auto sphere = test::LitSphere(lights, kGrey, {.noise = 0.01});
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kRobust, "1 % noise, robust"), 2.5);
   EXPECT_LT(MeanError(lights, sphere, StereoMethod::kAuto, "1 % noise, auto"), 2.5);
 }
 
-TEST(PhotometricStereo, AutoStaysWithLeastSquaresWhereItExplainsTheImages) {
+TEST(PhotometricStereo, AutoUsesLeastSquaresIfTheyFit) {
   const auto lights = test::RingOfLights(12, 30);
   const PhotometricSolver solver(lights, By(StereoMethod::kAuto));
   std::vector<double> observations;
@@ -102,7 +101,7 @@ TEST(PhotometricStereo, AutoStaysWithLeastSquaresWhereItExplainsTheImages) {
   EXPECT_LT(test::DegreesBetween(estimate.normal, normal), 1e-3);
 }
 
-TEST(PhotometricStereo, LeavesOutSaturatedObservations) {
+TEST(PhotometricStereo, IgnoresSaturatedObservations) {
   const auto lights = test::RingOfLights(6, 40);
   const Vector3d normal = Vector3d(0.1, 0.1, 0.9).normalized();
   for (const StereoMethod method :
@@ -115,7 +114,7 @@ TEST(PhotometricStereo, LeavesOutSaturatedObservations) {
   }
 }
 
-TEST(PhotometricStereo, SaysNothingOfPixelsThatStayDark) {
+TEST(PhotometricStereo, HasNoSolutionForDarkPixels) {
   const auto lights = test::RingOfLights(6, 40);
   const std::vector<double> dark(6, 0.0);
   for (const StereoMethod method :
@@ -124,9 +123,8 @@ TEST(PhotometricStereo, SaysNothingOfPixelsThatStayDark) {
   }
 }
 
-// Whatever the photographs show, what is seen faces the camera; where nothing like it explains
-// them, nothing is said.
-TEST(PhotometricStereo, NeverTurnsANormalAwayFromTheCamera) {
+// For random observations, too.
+TEST(PhotometricStereo, NormalsAlwaysFaceTheCamera) {
   const auto lights = test::RingOfLights(7, 75);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -147,9 +145,9 @@ TEST(PhotometricStereo, NeverTurnsANormalAwayFromTheCamera) {
   }
 }
 
-// A light from the front whose shadow falls on the pixel, beside two that graze it: the one g that
-// explains all three faces away.
-TEST(PhotometricStereo, LeastSquaresSayNothingWhereTheirNormalWouldFaceAway) {
+// The frontal light is in a cast shadow, the other two graze the surface: the exact solution faces
+// away.
+TEST(PhotometricStereo, LeastSquaresHaveNoSolutionIfTheNormalWouldFaceAway) {
   std::vector<DirectionalLight> lights;
   std::vector<double> observations;
   for (const Vector3d& l : {Vector3d(1, 0, 0.2), Vector3d(0, 1, 0.2), Vector3d(0.5, 0.5, 0.7)}) {
@@ -163,18 +161,18 @@ TEST(PhotometricStereo, LeastSquaresSayNothingWhereTheirNormalWouldFaceAway) {
   EXPECT_GT(estimate.normal.z(), 0);
 }
 
-TEST(PhotometricStereo, RefusesFewerThanThreeLights) {
+TEST(PhotometricStereo, RejectsFewerThanThreeLights) {
   EXPECT_THAT(test::InputErrorOf([] { PhotometricSolver(test::RingOfLights(2, 40), {}); }),
               HasSubstr("three or more"));
 }
 
-TEST(PhotometricStereo, RefusesLightsInOnePlane) {
+TEST(PhotometricStereo, RejectsCoplanarLights) {
   std::vector<DirectionalLight> lights;
   for (const double x : {-0.5, -0.2, 0.1, 0.4}) lights.push_back({Vector3d(x, x, 1).normalized()});
   EXPECT_THAT(test::InputErrorOf([&] { PhotometricSolver(lights, {}); }), HasSubstr("one plane"));
 }
 
-TEST(PhotometricStereo, RefusesOptionsOutOfRange) {
+TEST(PhotometricStereo, RejectsOptionsOutOfRange) {
   const auto lights = test::RingOfLights(6, 40);
   StereoOptions options;
   options.dark = 2;
@@ -184,7 +182,7 @@ TEST(PhotometricStereo, RefusesOptionsOutOfRange) {
   EXPECT_THAT(test::InputErrorOf([&] { PhotometricSolver(lights, options); }),
               HasSubstr("--tolerance"));
   options = {};
-  options.largest_residual = -1;
+  options.max_residual = -1;
   EXPECT_THAT(test::InputErrorOf([&] { PhotometricSolver(lights, options); }),
               HasSubstr("--residual"));
 }

@@ -44,7 +44,7 @@ Image RelitOnce(const OlatCapture& capture, const std::vector<Color>& weights) {
   return result;
 }
 
-TEST(Relight, SumsImagesByTheirWeightsChannelByChannel) {
+TEST(Relight, SumsWeightedImagesChannelByChannel) {
   const test::ScratchFolder scratch;
   const OlatCapture capture = FlatCapture(scratch.path(), synthetic::LightStageLights(3));
   const Image relit = RelitOnce(capture, {Color(1, 0, 0), Color(0.5, 2, 0), Color(0, 0, 9)});
@@ -53,8 +53,8 @@ TEST(Relight, SumsImagesByTheirWeightsChannelByChannel) {
   EXPECT_EQ(relit.At(1, 1)[2], 0);
 }
 
-// A matt white plate that faces up, under each light: pi / E times the image is its reflectance.
-TEST(Relight, WeighsByTheLightsIrradiance) {
+// A white diffuse plate that faces up, under lights of different irradiance.
+TEST(Relight, DividesByTheIrradianceOfTheLights) {
   const test::ScratchFolder scratch;
   std::vector<DirectionalLight> lights = synthetic::LightStageLights(200);
   for (std::size_t i = 0; i < lights.size(); ++i) lights[i].irradiance *= i % 2 == 0 ? 1 : 3;
@@ -74,7 +74,7 @@ TEST(Relight, WeighsByTheLightsIrradiance) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(relit.At(0, 0)[c], expected[c], 0.01 * expected[c]);
 }
 
-TEST(Relight, InLittleMemoryIsTheSameInMorePasses) {
+TEST(Relight, IsTheSameInLittleMemory) {
   const test::ScratchFolder scratch;
   const OlatCapture capture = FlatCapture(scratch.path(), synthetic::LightStageLights(5));
   std::vector<std::vector<Color>> weights;
@@ -97,13 +97,14 @@ TEST(Relight, InLittleMemoryIsTheSameInMorePasses) {
   EXPECT_EQ(relight(4 * 4 * 3 * 3 * 4), at_once);
 }
 
-TEST(Relight, StopsWhenItIsAsked) {
+TEST(Relight, CanBeStopped) {
   const test::ScratchFolder scratch;
   const OlatCapture capture = FlatCapture(scratch.path(), synthetic::LightStageLights(5));
   int asked = 0;
   EXPECT_FALSE(Relight(
       capture, InputEncoding::kAuto, {std::vector<Color>(5, Color::Ones())}, 1 << 20,
-      [&] { return ++asked < 3; }, [](int, const Image&) { ADD_FAILURE() << "half a picture"; }));
+      [&] { return ++asked < 3; },
+      [](int, const Image&) { ADD_FAILURE() << "an incomplete picture"; }));
 }
 
 TEST(Relight, NamesAnImageThatCannotBeRead) {
@@ -114,22 +115,22 @@ TEST(Relight, NamesAnImageThatCannotBeRead) {
               HasSubstr("3.exr"));
 }
 
-TEST(Relight, RefusesACaptureInTheDark) {
+TEST(Relight, RejectsABlackCapture) {
   const test::ScratchFolder scratch;
   const OlatCapture capture = FlatCapture(scratch.path(), synthetic::LightStageLights(4));
-  RefuseBlackCapture(capture, InputEncoding::kAuto);
+  CheckNotBlack(capture, InputEncoding::kAuto);
   for (const fs::path& file : capture.images) {
     WriteImage(file, Image(4, 3, 3, ColorEncoding::kLinear));
   }
-  EXPECT_THAT(test::InputErrorOf([&] { RefuseBlackCapture(capture, InputEncoding::kAuto); }),
+  EXPECT_THAT(test::InputErrorOf([&] { CheckNotBlack(capture, InputEncoding::kAuto); }),
               AllOf(HasSubstr(scratch.path().string()), HasSubstr("all 4 images are black")));
 }
 
-TEST(Exposure, IsInStopsAndByItselfPutsBrightPartsBelowWhite) {
+TEST(Exposure, IsInStopsAndAutomaticallyBelowWhite) {
   Image image(10, 10, 3, ColorEncoding::kLinear);
   std::ranges::fill(image.pixels, 3.2f);
   EXPECT_NEAR(AutoExposure(image), -2, 1e-6);
-  EXPECT_NEAR(Exposed(image, 1).pixels[0], 6.4, 1e-6);
+  EXPECT_NEAR(WithExposure(image, 1).pixels[0], 6.4, 1e-6);
   std::ranges::fill(image.pixels, 0.0f);
   EXPECT_EQ(AutoExposure(image), 0);
 }

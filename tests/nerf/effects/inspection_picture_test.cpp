@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "nerf/output/lettering.h"
+#include "nerf/output/draw_text.h"
 
 namespace nerf {
 namespace {
@@ -57,7 +57,7 @@ TEST(InspectionPicture, OfNothingDrawsNothingButWords) {
   const Image image = PictureOf({});
   EXPECT_EQ(Blue(image, 0, image.width).count, 0);
   const auto dark = std::ranges::count_if(image.pixels, [](float v) { return v < 0.5f; });
-  EXPECT_EQ(dark > 0, CanLetter());
+  EXPECT_EQ(dark > 0, HasFont());
 }
 
 }  // namespace

@@ -10,16 +10,16 @@
 namespace nerf {
 namespace {
 
-TEST(CheckCameraCentre, NamesTheViewThatStandsTooFarOut) {
+TEST(CheckCameraCentre, NamesTheViewThatIsTooFarOut) {
   const auto refusal = [](double x) {
     return test::InputErrorOf([&] { CheckCameraCentre({0, x, 0}, "b.jpg"); });
   };
   EXPECT_EQ(refusal(1e8), "no error");
-  EXPECT_THAT(refusal(-1e10), testing::HasSubstr("b.jpg: its camera stands 1e+10"));
+  EXPECT_THAT(refusal(-1e10), testing::HasSubstr("b.jpg: the camera is 1e+10"));
   EXPECT_THAT(refusal(std::numeric_limits<double>::quiet_NaN()), testing::HasSubstr("b.jpg"));
 }
 
-TEST(CheckRays, TakesWhatItIsGivenWhereItIsRaysAndNothing) {
+TEST(CheckRays, AcceptsValidRaysOnly) {
   RayBatch rays;
   EXPECT_NO_THROW(CheckRays(rays));
   rays.Resize(2);

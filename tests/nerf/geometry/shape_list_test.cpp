@@ -14,7 +14,7 @@ struct Item {
   Shape shape;
 };
 
-// Spheres and turned boxes at random places within 3 of the origin.
+// Spheres and rotated boxes at random positions, with coordinates within 3.
 std::vector<Item> RandomItems(std::mt19937& random) {
   std::uniform_real_distribution<double> place(-3, 3), size(0.2, 1.2), degrees(0, 360);
   const auto point = [&] {
@@ -72,7 +72,7 @@ TEST(FirstHit, AgreesWithMarchingAlongTheRay) {
       continue;
     }
     ++hits;
-    // Marching may step over a corner that the ray cuts off.
+    // Marching can step over a corner.
     if (marched > hit->distance + kStep) {
       const double middle = hit->distance + kStep / 2;
       EXPECT_FALSE(Contains(hit->item->shape, origin + middle * ray.direction_in_world)) << i;

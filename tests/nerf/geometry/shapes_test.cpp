@@ -21,14 +21,14 @@ void ExpectHit(const Shape& shape, const Ray& ray, double distance, const Vector
   EXPECT_LT((hit->normal_in_world - normal).norm(), 1e-12) << hit->normal_in_world.transpose();
 }
 
-TEST(Sphere, IsMetAtItsNearSideWithAnOutwardNormal) {
+TEST(Sphere, IsHitOnTheNearSideWithAnOutwardNormal) {
   const Sphere sphere{{1, 2, 3}, 0.5};
   ExpectHit(sphere, MakeRay({1, -3, 3}, {0, 1, 0}), 4.5, {0, -1, 0});
-  // Off the middle by 0.3: half a chord of 0.4.
+  // At 0.3 from the centre, half the chord is 0.4.
   ExpectHit(sphere, MakeRay({1.3, -3, 3}, {0, 1, 0}), 4.6, {0.6, -0.8, 0});
 }
 
-TEST(Sphere, IsMetAtItsFarSideFromInsideWithAnOutwardNormal) {
+TEST(Sphere, IsHitOnTheFarSideFromInsideWithAnOutwardNormal) {
   ExpectHit(Sphere{{1, 2, 3}, 0.5}, MakeRay({1, 2.25, 3}, {0, 1, 0}), 0.25, {0, 1, 0});
 }
 
@@ -38,7 +38,7 @@ TEST(Sphere, IsMissedBesideAndBehind) {
   EXPECT_FALSE(Intersect(sphere, MakeRay({5, 0, 0}, {1, 0, 0})));
 }
 
-TEST(Sphere, GrazingRaysMeetItOnOneSideOfTheTangentOnly) {
+TEST(Sphere, IsHitByGrazingRaysInsideTheTangentOnly) {
   const Sphere sphere{{0, 0, 0}, 1};
   const double inside = 1 - 1e-12;
   const auto hit = Intersect(sphere, MakeRay({-5, inside, 0}, {1, 0, 0}));
@@ -48,21 +48,21 @@ TEST(Sphere, GrazingRaysMeetItOnOneSideOfTheTangentOnly) {
   EXPECT_FALSE(Intersect(sphere, MakeRay({-5, 1 + 1e-12, 0}, {1, 0, 0})));
 }
 
-TEST(Sphere, KeepsItsDigitsFromAFarAway) {
-  // b^2 - 4ac would lose the radius here altogether.
+TEST(Sphere, IsPreciseFromFarAway) {
+  // b^2 - 4ac would lose the radius to cancellation.
   const auto hit = Intersect(Sphere{{0, 0, 0}, 1e-3}, MakeRay({-1e6, 0, 0}, {1, 0, 0}));
   ASSERT_TRUE(hit.has_value());
   EXPECT_NEAR(hit->distance, 1e6 - 1e-3, 1e-9);
 }
 
-TEST(Sphere, SkipsWhatLiesBeforeTheMinimumDistance) {
+TEST(Sphere, IgnoresHitsBeforeTheMinimumDistance) {
   const Ray ray = MakeRay({-3, 0, 0}, {1, 0, 0});
   const Sphere sphere{{0, 0, 0}, 1};
   EXPECT_NEAR(Intersect(sphere, ray, 2.5)->distance, 4, 1e-12);
   EXPECT_FALSE(Intersect(sphere, ray, 4.5));
 }
 
-TEST(Box, IsMetOnTheFaceThatLooksAtTheRay) {
+TEST(Box, IsHitOnTheFaceTowardsTheRay) {
   const Box box{{0, 0, 1}, {1, 2, 0.5}};
   ExpectHit(box, MakeRay({-4, 0.5, 1}, {1, 0, 0}), 3, {-1, 0, 0});
   ExpectHit(box, MakeRay({4, 0.5, 1}, {-1, 0, 0}), 3, {1, 0, 0});
@@ -70,14 +70,14 @@ TEST(Box, IsMetOnTheFaceThatLooksAtTheRay) {
   ExpectHit(box, MakeRay({0.5, 5, 1.2}, {0, -1, 0}), 3, {0, 1, 0});
 }
 
-TEST(Box, IsLeftThroughTheFaceAheadFromInside) {
+TEST(Box, IsHitOnTheFaceAheadFromInside) {
   const Box box{{0, 0, 1}, {1, 2, 0.5}};
   ExpectHit(box, MakeRay({0.25, 0, 1}, {1, 0, 0}), 0.75, {1, 0, 0});
   ExpectHit(box, MakeRay({0, 0, 1}, {0, 0, -1}), 0.5, {0, 0, -1});
 }
 
-TEST(Box, TurnsWithItsHeading) {
-  // Turned by 45 degrees, a unit cube shows an edge at sqrt(2)/2, and its faces look diagonally.
+TEST(Box, RotatesWithItsHeading) {
+  // Rotated by 45 degrees, a unit cube has an edge at sqrt(2)/2 and diagonal normals.
   const Box box{{0, 0, 0}, {0.5, 0.5, 0.5}, HeadingFromDegrees(45)};
   const double half = std::numbers::sqrt2 / 2;
   ExpectHit(box, MakeRay({5, 0.1, 0}, {-1, 0, 0}), 5 - (half - 0.1), {half, half, 0});
@@ -100,8 +100,8 @@ TEST(Box, SignedZerosInADirectionMakeNoDifference) {
   }
 }
 
-// From a face, along a face, along an edge, through a corner: met or missed, never half of both.
-TEST(Box, RaysThatTouchItAreMetSomewhereOrMissIt) {
+// Rays from a face, along a face, along an edge, and through a corner.
+TEST(Box, HitsOfTouchingRaysAreOnTheSurface) {
   const Box box{{0, 0, 0}, {1, 1, 1}};
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 0.0, 1.0}) {
@@ -122,7 +122,7 @@ TEST(Box, RaysThatTouchItAreMetSomewhereOrMissIt) {
   }
 }
 
-TEST(Disc, IsMetWithinItsRadiusFromBothSides) {
+TEST(Disc, IsHitWithinItsRadiusFromBothSides) {
   const Disc disc{{1, 0, 0.5}, 2};
   ExpectHit(disc, MakeRay({1, 0, 2.5}, {0, 0, -1}), 2, {0, 0, 1});
   ExpectHit(disc, MakeRay({1, 1.9, -1}, {0, 0, 1}), 1.5, {0, 0, 1});
@@ -135,9 +135,9 @@ TEST(Disc, IsMissedByParallelAndDepartingRays) {
   EXPECT_FALSE(Intersect(disc, MakeRay({0, 0, 1}, {0, 0, 1})));
 }
 
-TEST(ShapeFromWorld, MovesToTheCentreAndTurnsIntoTheAxesOfABox) {
+TEST(ShapeFromWorld, IsRelativeToTheCenterAndTheAxes) {
   const Box box{{1, 2, 3}, {1, 1, 1}, HeadingFromDegrees(90)};
-  // The box's x axis points along world y.
+  // The x axis of the box is the world y axis.
   EXPECT_LT((ShapeFromWorld(box, {1, 2.5, 3.25}) - Vector3d(0.5, 0, 0.25)).norm(), 1e-12);
   EXPECT_LT((ShapeFromWorld(Sphere{{1, 2, 3}, 1}, {1, 2.5, 3}) - Vector3d(0, 0.5, 0)).norm(),
             1e-12);

@@ -44,7 +44,7 @@ EnvironmentMap SkyWithASun(int height = 32, double sun = 300) {
   return {image, "sky"};
 }
 
-TEST(EnvironmentMap, HasUpAtTheTopAheadInTheMiddleAndRightAtTheRight) {
+TEST(EnvironmentMap, HasTheDocumentedOrientation) {
   Image image = Black(32);
   Light(image, 10, 0, Color(1, 0, 0));
   for (int x = 0; x < 64; ++x) Light(image, x, 0, Color(1, 0, 0));
@@ -57,7 +57,7 @@ TEST(EnvironmentMap, HasUpAtTheTopAheadInTheMiddleAndRightAtTheRight) {
   EXPECT_TRUE(map.Radiance(-Vector3d::UnitY()).isZero());
 }
 
-TEST(EnvironmentMap, PixelsAreFoundByTheirDirectionsAndCoverTheSphere) {
+TEST(EnvironmentMap, DirectionsMapBackToTheirPixelsAndCoverTheSphere) {
   const EnvironmentMap map = SkyWithASun(16);
   double sum = 0;
   for (int y = 0; y < 16; ++y) {
@@ -69,65 +69,65 @@ TEST(EnvironmentMap, PixelsAreFoundByTheirDirectionsAndCoverTheSphere) {
   EXPECT_NEAR(sum, 4 * pi, 1e-12);
 }
 
-TEST(EnvironmentMap, IsDrawnFromAsItsDensitySays) {
+TEST(EnvironmentMap, SamplesFollowThePdf) {
   const EnvironmentMap map = SkyWithASun(12, 20);
   const double deviation = test::ChiSquareDeviation(
-      [&](std::uint64_t i) { return map.Draw(test::Uniform3(1, i).head<2>())->direction; },
+      [&](std::uint64_t i) { return map.Sample(test::Uniform3(1, i).head<2>())->direction; },
       [&](const Vector3d& d) { return map.Pdf(d); }, 96);
   EXPECT_LT(deviation, 5);
 }
 
-TEST(EnvironmentMap, SumsOfDrawsAreIntegrals) {
+TEST(EnvironmentMap, SamplesEstimateTheIrradiance) {
   const EnvironmentMap map = SkyWithASun();
   const Vector3d normal = Vector3d(0.2, 0.9, -0.3).normalized();
   Color sum = Color::Zero();
   constexpr int kDraws = 50000;
   for (std::uint64_t i = 0; i < kDraws; ++i) {
-    const auto sample = map.Draw(test::Uniform3(2, i).head<2>());
+    const auto sample = map.Sample(test::Uniform3(2, i).head<2>());
     sum += sample->radiance * (std::max(0.0, normal.dot(sample->direction)) / sample->pdf);
   }
   EXPECT_LT(((sum / kDraws - map.Irradiance(normal)) / map.Irradiance(normal)).abs().maxCoeff(),
             0.02);
 }
 
-TEST(EnvironmentMap, WithOneLitPixelIsDrawnFromThereOnly) {
+TEST(EnvironmentMap, SamplesOfASingleBrightPixelAreInsideIt) {
   Image image = Black(16);
   Light(image, 31, 15, Color(0, 0, 7));  // at the bottom pole and the seam
   const EnvironmentMap map(image, "one");
   for (std::uint64_t i = 0; i < 1000; ++i) {
-    const auto sample = map.Draw(test::Uniform3(3, i).head<2>());
+    const auto sample = map.Sample(test::Uniform3(3, i).head<2>());
     ASSERT_TRUE(sample);
     ASSERT_EQ(sample->radiance.z(), 7);
     ASSERT_EQ(map.Radiance(sample->direction).z(), 7);
-    // All of the light comes from that solid angle.
+    // The density is uniform over the solid angle of the pixel.
     ASSERT_NEAR(sample->pdf * map.SolidAngle(15), 1, 1e-9);
   }
   for (const double u : {0.0, 1 - 0x1p-53}) {
-    EXPECT_EQ(map.Draw({u, u})->radiance.z(), 7);
+    EXPECT_EQ(map.Sample({u, u})->radiance.z(), 7);
   }
 }
 
-TEST(EnvironmentMap, IsNeverDrawnFromWhereItIsBlack) {
+TEST(EnvironmentMap, BlackPixelsAreNeverSampled) {
   for (const int x : {0, 5, 31}) {
     for (const int y : {0, 7, 15}) {
       Image image = Black(16);
       Light(image, x, y, Color::Constant(0.1));
       const EnvironmentMap map(image, "one");
       for (const double u : {0.0, 0.3, 1 - 0x1p-53}) {
-        for (const double v : {0.0, 0.7, 1 - 0x1p-53}) EXPECT_GT(map.Draw({u, v})->pdf, 0);
+        for (const double v : {0.0, 0.7, 1 - 0x1p-53}) EXPECT_GT(map.Sample({u, v})->pdf, 0);
       }
     }
   }
 }
 
-TEST(EnvironmentMap, ThatIsBlackGivesNoDirection) {
+TEST(EnvironmentMap, ABlackMapHasNoSamples) {
   const EnvironmentMap map(Black(8), "black");
-  EXPECT_FALSE(map.Draw({0.5, 0.5}));
+  EXPECT_FALSE(map.Sample({0.5, 0.5}));
   EXPECT_EQ(map.Pdf(Vector3d::UnitX()), 0);
   EXPECT_TRUE(map.Irradiance(Vector3d::UnitX()).isZero());
 }
 
-TEST(EnvironmentMap, PolesAreNoBrighterThanTheRest) {
+TEST(EnvironmentMap, AUniformMapIsUniformAtThePoles) {
   const EnvironmentMap map = EnvironmentMap::Uniform(Color::Ones());
   EXPECT_NEAR(map.Pdf(Vector3d::UnitY()), 1 / (4 * pi), 1e-9);
   EXPECT_NEAR(map.Pdf(-Vector3d::UnitY()), 1 / (4 * pi), 1e-9);
@@ -136,7 +136,7 @@ TEST(EnvironmentMap, PolesAreNoBrighterThanTheRest) {
   }
 }
 
-TEST(EnvironmentMap, ThatIsNoneIsRefusedByName) {
+TEST(EnvironmentMap, RejectsInvalidFilesByName) {
   const test::ScratchFolder scratch;
   const auto error = [&](const Image& image) {
     WriteImage(scratch.path() / "map.exr", image);
@@ -155,8 +155,8 @@ TEST(EnvironmentMap, ThatIsNoneIsRefusedByName) {
 
 TEST(PointLight, FallsOffWithTheSquareOfTheDistance) {
   const PointLight light{{0, 0, 3}, Color(1, 2, 9)};
-  const ArrivingLight near = Arriving(light, {0, 0, 2});
-  const ArrivingLight far = Arriving(light, {0, 0, 0});
+  const IncidentLight near = IncidentFrom(light, {0, 0, 2});
+  const IncidentLight far = IncidentFrom(light, {0, 0, 0});
   EXPECT_TRUE(far.to_light.isApprox(Vector3d::UnitZ()));
   EXPECT_NEAR(far.distance, 3, 1e-12);
   EXPECT_NEAR(near.irradiance.z(), 9, 1e-12);
@@ -179,7 +179,7 @@ TEST(SphericalHarmonics, AreOrthonormal) {
   }
 }
 
-TEST(ShIrradiance, IsExactForLightOfLowDegree) {
+TEST(ShIrradiance, IsExactForRadianceOfLowDegree) {
   Image image = Black(64);
   const EnvironmentMap grid(image, "grid");
   for (int y = 0; y < 64; ++y) {
@@ -192,7 +192,7 @@ TEST(ShIrradiance, IsExactForLightOfLowDegree) {
   EXPECT_LT(error.largest, 1e-3);
 }
 
-TEST(ShIrradiance, OfASingleSunIsOffByWhatTheSeriesLeavesOut) {
+TEST(ShIrradiance, HasASmallErrorForASmallBrightLight) {
   const ShError error = ShIrradianceError(SkyWithASun(), 200);
   std::cout << "spherical harmonics, a sun in the sky: mean error " << 100 * error.mean
             << " %, largest " << 100 * error.largest << " % of the mean irradiance\n";
@@ -200,13 +200,13 @@ TEST(ShIrradiance, OfASingleSunIsOffByWhatTheSeriesLeavesOut) {
   EXPECT_GT(error.largest, error.mean);
 }
 
-TEST(ShIrradiance, OfTheCapturedEnvironmentsOfTheWorldIsCloseToTheIntegral) {
+TEST(ShIrradiance, HasASmallErrorForCapturedEnvironments) {
   for (const char* name : {"studio_small_03_1k.hdr", "venice_sunset_1k.hdr"}) {
     const auto map = EnvironmentMap::Read(std::string(NERF_TEST_DATA) + "/environments/" + name);
     const ShError error = ShIrradianceError(map, 64);
     std::cout << "spherical harmonics, " << name << ": mean error " << 100 * error.mean
               << " %, largest " << 100 * error.largest << " % of the mean irradiance\n";
-    EXPECT_LT(error.mean, 0.1);  // soft boxes in the dark are hard for nine numbers
+    EXPECT_LT(error.mean, 0.1);  // bright soft boxes in a dark studio are the hardest case
   }
 }
 

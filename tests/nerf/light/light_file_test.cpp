@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
+#include "nerf/base/atomic_file.h"
+#include "nerf/geometry/directions.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
@@ -14,7 +17,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-TEST(LightFile, HasDirectionsOfAnyLengthWithOrWithoutIntensities) {
+TEST(LightFile, ReadsDirectionsOfAnyLengthWithOptionalIntensities) {
   const test::ScratchFolder scratch;
   const auto lights =
       ReadLights(scratch.Write("lights.txt", "3\n0 0 2\n\n3 0 4 2 # bright\n0 1 0 1 2 3\n"));
@@ -26,21 +29,39 @@ TEST(LightFile, HasDirectionsOfAnyLengthWithOrWithoutIntensities) {
   EXPECT_NEAR(lights[2].irradiance.y(), 2 * std::numbers::pi, 1e-12);
 }
 
-TEST(LightFile, IsReadBackAsItWasWritten) {
+TEST(LightFile, IsReadBackUnchanged) {
   const test::ScratchFolder scratch;
-  const std::vector<DirectionalLight> lights = {
+  std::vector<DirectionalLight> lights = {
       {Eigen::Vector3d(1, 2, -3).normalized()},
       {Eigen::Vector3d(-1, 0.1, 0.7).normalized(), Color(0.1, 2, 30)}};
+  for (int i = 0; i < 200; ++i) {
+    const double scale = std::exp2(i % 40 - 20);
+    lights.push_back({FibonacciDirection(i, 200), scale * Color(1 + i, 0.3, 1.0 / (1 + i))});
+  }
   WriteLights(scratch.path() / "lights.txt", lights);
   const auto back = ReadLights(scratch.path() / "lights.txt");
-  ASSERT_EQ(back.size(), 2u);
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_LT((back[i].to_light - lights[i].to_light).norm(), 1e-8);
-    EXPECT_TRUE(back[i].irradiance.isApprox(lights[i].irradiance, 1e-7));
+  ASSERT_EQ(back.size(), lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    EXPECT_LT((back[i].to_light - lights[i].to_light).norm(), 1e-8) << i;
+    EXPECT_LT((back[i].irradiance / lights[i].irradiance - 1).abs().maxCoeff(), 1e-8) << i;
   }
+  // What was read is written the same.
+  WriteLights(scratch.path() / "again.txt", back);
+  EXPECT_EQ(ReadWholeFile(scratch.path() / "again.txt"),
+            ReadWholeFile(scratch.path() / "lights.txt"));
 }
 
-TEST(LightFile, ThatIsWrongIsNamedWithItsLine) {
+TEST(LightFile, OmitsIntensitiesOfOneAndNamesAFileThatCannotBeWritten) {
+  const test::ScratchFolder scratch;
+  const std::vector<DirectionalLight> lights = {{Eigen::Vector3d::UnitX()}};
+  WriteLights(scratch.path() / "lights.txt", lights);
+  EXPECT_THAT(ReadWholeFile(scratch.path() / "lights.txt"),
+              testing::EndsWith("\n1.000000000 0.000000000 0.000000000\n"));
+  EXPECT_THAT(test::InputErrorOf([&] { WriteLights("/nowhere/lights.txt", lights); }),
+              HasSubstr("/nowhere/lights.txt"));
+}
+
+TEST(LightFile, ErrorsNameTheFileAndTheLine) {
   const test::ScratchFolder scratch;
   const auto error = [&](const char* text) {
     const auto file = scratch.Write("lights.txt", text);

@@ -22,9 +22,9 @@ Eigen::Vector2d Chromaticity(const Spectrum& spectrum) {
 
 int SampleAt(double nm) { return static_cast<int>((nm - Spectrum::kFirst) / Spectrum::kStep); }
 
-TEST(MatchingFunctions, AreNormalisedAlikeAndPeakWhereTheyShould) {
+TEST(MatchingFunctions, HaveEqualIntegralsAndAPeakAt555Nanometers) {
   const Eigen::Vector3d sums = XyzFromSpectrum(EqualEnergy());
-  // The CIE's sums at 5 nm: 21.3714, 21.3714, 21.3715 times 5 nm.
+  // The sums published by the CIE at 5 nm: 21.3714, 21.3714, 21.3715 times 5 nm.
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sums[c], 106.857, 0.02);
   EXPECT_EQ(MatchingFunctions()[SampleAt(555)][1], 1.0);
   for (const auto& values : MatchingFunctions()) EXPECT_LE(values[1], 1.0);
@@ -39,8 +39,8 @@ TEST(Illuminant, HasThePublishedChromaticity) {
   EXPECT_LT((Chromaticity(Daylight(7504)) - Eigen::Vector2d(0.29903, 0.31488)).norm(), 1e-4);
 }
 
-// The CIE's own table of D65, relative to 100 at 560 nm.
-TEST(Illuminant, D65IsItsTable) {
+// The table of D65 of the CIE, relative to 100 at 560 nm.
+TEST(Illuminant, D65MatchesThePublishedTable) {
   const Spectrum d65 = Daylight(6504);
   const double table[][2] = {{380, 49.9755}, {400, 82.7549}, {450, 117.008}, {500, 109.354},
                              {560, 100},     {600, 90.0062}, {700, 71.6091}, {780, 63.3828}};
@@ -48,14 +48,14 @@ TEST(Illuminant, D65IsItsTable) {
 }
 
 TEST(BlackBody, FollowsPlanck) {
-  // Ratio of two wavelengths, worked out by hand at 5000 K: (450/600)^-5 expm1(x600)/expm1(x450).
+  // Ratio of two wavelengths, computed by hand at 5000 K: (450/600)^-5 expm1(x600)/expm1(x450).
   const double x450 = 1.438777e-2 / (450e-9 * 5000);
   const double x600 = 1.438777e-2 / (600e-9 * 5000);
   const double expected = std::pow(450.0 / 600, -5) * std::expm1(x600) / std::expm1(x450);
   const Spectrum body = BlackBody(5000);
   EXPECT_NEAR(body.values[SampleAt(450)] / body.values[SampleAt(600)], expected, 1e-9);
   EXPECT_NEAR(body.values[SampleAt(560)], 1, 1e-12);
-  // Illuminant A is a black body of 2856 K in today's units.
+  // Illuminant A is a black body of 2856 K with the current constants.
   EXPECT_LT((Chromaticity(BlackBody(2855.5)) - Chromaticity(IlluminantA())).norm(), 1e-4);
   for (const double value : BlackBody(100).values) EXPECT_TRUE(std::isfinite(value));
 }
@@ -77,7 +77,7 @@ TEST(LightName, WarmLightsAreRedderAndAllHaveUnitLuminance) {
   }
 }
 
-TEST(LightName, ThatIsNoneIsNoneAndTemperaturesOutOfRangeAreRefused) {
+TEST(LightName, RejectsUnknownNamesAndTemperaturesOutOfRange) {
   for (const char* name : {"", "F2", "blackbody", "blackbody:", "blackbody:hot", "D", "D65x"}) {
     EXPECT_FALSE(ColorOfLight(name)) << name;
   }
@@ -85,13 +85,12 @@ TEST(LightName, ThatIsNoneIsNoneAndTemperaturesOutOfRangeAreRefused) {
   EXPECT_THAT(test::InputErrorOf([] { ColorOfLight("D20"); }), HasSubstr("4000 to 25000"));
 }
 
-TEST(Units, OfGreenPhotonsAndLamps) {
+TEST(Units, MatchKnownValuesAndAreInvertible) {
   EXPECT_NEAR(PhotonEnergy(555), 3.5792e-19, 1e-22);
   Spectrum green;
   green.values[SampleAt(555)] = 2;
   EXPECT_NEAR(LuminousEfficacy(green), 683, 1e-9);
-  // A black body of 6504 K, light from 380 to 780 nm only: 198 lm / W by the same sums elsewhere
-  // is 200 within the choice of limits; what must hold exactly is the way back.
+  // About 204 lm / W, depending on the limits of the integral; the inverse must be exact.
   const Spectrum day = Daylight(6504);
   EXPECT_NEAR(WattsFromLumens(LumensFromWatts(7, day), day), 7, 1e-12);
   EXPECT_NEAR(LuminousEfficacy(day), 204, 6);

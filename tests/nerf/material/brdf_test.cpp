@@ -20,7 +20,7 @@ constexpr double kCosines[] = {1.0, 0.8, 0.4, 0.1, 0.01};
 
 Vector3d Towards(double cosine) { return {std::sqrt(1 - cosine * cosine), 0, cosine}; }
 
-// Each BRDF by name; MERL's is a measurement of a rough metal.
+// All BRDFs by name; the MERL BRDF is a tabulated rough metal.
 struct Named {
   std::string name;
   std::shared_ptr<const Brdf> brdf;
@@ -37,10 +37,10 @@ std::vector<Named> AllBrdfs() {
           {"Metal_1", std::make_shared<Conductor>(gold, 1.0)},
           {"Plastic_0_2", std::make_shared<CoatedDiffuse>(red, 1.5, 0.2)},
           {"Plastic_0_7", std::make_shared<CoatedDiffuse>(red, 1.5, 0.7)},
-          {"Merl", std::make_shared<MerlBrdf>(MerlBrdf::Measure(Conductor(gold, 0.3)))}};
+          {"Merl", std::make_shared<MerlBrdf>(MerlBrdf::Tabulate(Conductor(gold, 0.3)))}};
 }
 
-// integral of f cos over the hemisphere, by a fine grid: nothing of Sample or Pdf.
+// The integral of f cos over the hemisphere on a fine grid, independent of Sample and Pdf.
 Color DirectionalAlbedo(const Brdf& brdf, const Vector3d& w_o, int steps = 256) {
   Color sum = Color::Zero();
   for (int i = 0; i < steps; ++i) {
@@ -64,7 +64,7 @@ TEST_P(EveryBrdf, IsReciprocal) {
   }
 }
 
-TEST_P(EveryBrdf, MakesNoLightAtAnyAngle) {
+TEST_P(EveryBrdf, ConservesEnergy) {
   for (const double cosine : kCosines) {
     const Color albedo = DirectionalAlbedo(*GetParam().brdf, Towards(cosine));
     EXPECT_LE(albedo.maxCoeff(), 1.005) << cosine;
@@ -72,7 +72,7 @@ TEST_P(EveryBrdf, MakesNoLightAtAnyAngle) {
   }
 }
 
-TEST_P(EveryBrdf, DrawsDirectionsAsItsDensitySays) {
+TEST_P(EveryBrdf, SamplesFollowThePdf) {
   const Brdf& brdf = *GetParam().brdf;
   for (const double cosine : {0.9, 0.3}) {
     const Vector3d w_o = Towards(cosine);
@@ -86,7 +86,7 @@ TEST_P(EveryBrdf, DrawsDirectionsAsItsDensitySays) {
   }
 }
 
-TEST_P(EveryBrdf, IsIntegratedRightlyByItsSamples) {
+TEST_P(EveryBrdf, SamplesEstimateTheDirectionalAlbedo) {
   const Brdf& brdf = *GetParam().brdf;
   for (const double cosine : {1.0, 0.5, 0.1}) {
     const Vector3d w_o = Towards(cosine);
@@ -104,7 +104,7 @@ TEST_P(EveryBrdf, IsIntegratedRightlyByItsSamples) {
   }
 }
 
-TEST_P(EveryBrdf, ReflectsNothingFromBelowOrToBelow) {
+TEST_P(EveryBrdf, ReflectsNothingBelowTheSurface) {
   const Vector3d above(0.3, 0.1, 0.9);
   const Vector3d below(0.3, 0.1, -0.9);
   const Brdf& brdf = *GetParam().brdf;
@@ -130,8 +130,8 @@ TEST(Ggx, NormalsAreNormalised) {
   }
 }
 
-// The projected area of the facets that w sees is that of the surface (Heitz 2014, eq. 16).
-TEST(Ggx, MaskingHidesAsMuchAsFacesTheViewerTooMuch) {
+// The projected area of the facets visible from w is that of the surface (Heitz 2014, eq. 16).
+TEST(Ggx, VisibleFacetsHaveTheProjectedAreaOfTheSurface) {
   for (const double alpha : {0.1, 0.5, 1.0}) {
     const Ggx facets(alpha);
     for (const double cosine : {1.0, 0.5, 0.1}) {
@@ -147,7 +147,7 @@ TEST(Ggx, MaskingHidesAsMuchAsFacesTheViewerTooMuch) {
   }
 }
 
-// Without shadowing of the reflected light, and with F = 1, all light is reflected: 1 exactly.
+// Without shadowing of the reflected light, and with F = 1, all light is reflected.
 TEST(Ggx, PassesTheWeakWhiteFurnace) {
   for (const double alpha : {0.15, 0.5, 1.0}) {
     const Ggx facets(alpha);
@@ -166,7 +166,7 @@ TEST(Ggx, PassesTheWeakWhiteFurnace) {
   }
 }
 
-TEST(Conductor, TendsToAMirrorAsItsRoughnessGoes) {
+TEST(Conductor, ConvergesToAMirrorAtLowRoughness) {
   const Color F0(0.9, 0.6, 0.3);
   for (const double alpha : {1e-2, 1e-3, 0.0}) {
     const Conductor metal(F0, alpha);
@@ -190,7 +190,7 @@ TEST(Conductor, TendsToAMirrorAsItsRoughnessGoes) {
   }
 }
 
-TEST(Conductor, StaysFiniteWhereLightGrazes) {
+TEST(Conductor, IsFiniteAtGrazingAngles) {
   for (const double alpha : {0.0, 1e-3, 0.1, 1.0}) {
     const Conductor metal(Color::Ones(), alpha);
     for (const double v : {1e-4, 1e-8, 1e-16, 1e-300}) {
@@ -204,12 +204,12 @@ TEST(Conductor, StaysFiniteWhereLightGrazes) {
   }
 }
 
-// What goes in comes out: a white base under any coat, under light from everywhere.
-TEST(CoatedDiffuse, WithAWhiteBasePassesTheWhiteFurnace) {
+// A white base under any coat reflects all light.
+TEST(CoatedDiffuse, PassesTheWhiteFurnaceWithAWhiteBase) {
   for (const double alpha : {0.1, 0.3, 0.6, 1.0}) {
     const CoatedDiffuse glazed(Color::Ones(), 1.5, alpha);
     for (const double cosine : kCosines) {
-      // Lobes that graze need a fine grid.
+      // Grazing lobes need a fine grid.
       EXPECT_NEAR(DirectionalAlbedo(glazed, Towards(cosine), cosine < 0.1 ? 1200 : 256).x(), 1,
                   0.01)
           << alpha << " " << cosine;
@@ -217,9 +217,9 @@ TEST(CoatedDiffuse, WithAWhiteBasePassesTheWhiteFurnace) {
   }
 }
 
-// A polished coat: Fresnel's share in the mirror's direction, the rest of the light through the
-// base.
-TEST(CoatedDiffuse, TendsToAMirrorOverAMattBaseAsItsRoughnessGoes) {
+// A smooth coat reflects the Fresnel reflectance in the mirror direction; the base scatters the
+// rest.
+TEST(CoatedDiffuse, ConvergesToAMirrorOverADiffuseBaseAtLowRoughness) {
   const Color red(0.8, 0.2, 0.1);
   const Color F0 = Color::Constant(0.04);
   // Mean of Schlick's F over the cosine-weighted hemisphere: F0 + (1 - F0) 2 / 42.
@@ -228,7 +228,7 @@ TEST(CoatedDiffuse, TendsToAMirrorOverAMattBaseAsItsRoughnessGoes) {
     const CoatedDiffuse glazed(red, 1.5, alpha);
     for (const double v : {1.0, 0.5, 0.2}) {
       EXPECT_NEAR(glazed.CoatReflectance(v), SchlickFresnel(F0, v).x(), 0.004) << alpha << " " << v;
-      // Far from the mirrored direction the base is all.
+      // Far from the mirror direction only the base is visible.
       const double l = v < 0.9 ? 0.97 : 0.3;
       const Color base =
           red * (1 - SchlickFresnel(F0, v)) * (1 - SchlickFresnel(F0, l)) / (pi * (1 - mean));
@@ -237,12 +237,12 @@ TEST(CoatedDiffuse, TendsToAMirrorOverAMattBaseAsItsRoughnessGoes) {
   }
 }
 
-TEST(CoatedDiffuse, StaysFiniteWhereLightGrazes) {
+TEST(CoatedDiffuse, IsFiniteAtGrazingAngles) {
   for (const double alpha : {0.0, 1e-3, 0.1, 1.0}) {
     const CoatedDiffuse glazed(Color::Ones(), 1.5, alpha);
     for (const double v : {1e-4, 1e-8, 1e-16, 1e-300}) {
       const Vector3d w_o = Towards(v);
-      // Schlick's coat takes all light that grazes it; nothing is left for the base.
+      // By Schlick the coat reflects all grazing light.
       EXPECT_LE(glazed.CoatReflectance(v), 1.005) << alpha << " " << v;
       for (const double l : {1.0, 1e-4, 1e-16, 1e-300}) {
         const Vector3d w_i(-std::sqrt(1 - l * l), 0, l);
@@ -259,10 +259,10 @@ TEST(CoatedDiffuse, StaysFiniteWhereLightGrazes) {
   }
 }
 
-TEST(CoatedDiffuse, OfNoCoatIsLambert) {
+TEST(CoatedDiffuse, IsLambertianWithoutACoat) {
   const Color red(0.8, 0.2, 0.1);
   const CoatedDiffuse bare(red, 1.0 + 1e-9, 0.5);
-  // Schlick's coat still reflects at grazing angles, so nearly head-on.
+  // By Schlick the coat still reflects at grazing angles, hence nearly normal incidence.
   const Color f = bare.Eval(Towards(1), Towards(0.95));
   EXPECT_LT((f - red / pi).abs().maxCoeff(), 0.06 * red.x() / pi);
 }

@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-// 2 pi integral of R_d r dr, with r = tan(t) so that it reaches infinity.
+// 2 pi integral of R_d r dr, with r = tan(t) to cover all r.
 Color Integrated(const Dipole& dipole) {
   Color sum = Color::Zero();
   constexpr int kSteps = 200000;
@@ -22,7 +22,7 @@ Color Integrated(const Dipole& dipole) {
   return sum * (2 * pi * pi / 2 / kSteps);
 }
 
-TEST(Dipole, SumsToItsTotalDiffuseReflectance) {
+TEST(Dipole, IntegratesToItsTotalDiffuseReflectance) {
   for (const Medium& medium : {MarbleMedium(), WholeMilkMedium(), SkinMedium()}) {
     const Dipole dipole(medium);
     EXPECT_LT((Integrated(dipole) - dipole.TotalDiffuseReflectance()).abs().maxCoeff(), 1e-4);
@@ -30,7 +30,7 @@ TEST(Dipole, SumsToItsTotalDiffuseReflectance) {
 }
 
 // The column "diffuse reflectance" of Jensen et al. 2001, figure 5.
-TEST(Dipole, ReflectsWhatWasPublished) {
+TEST(Dipole, MatchesThePublishedReflectances) {
   const auto expect = [](const Medium& medium, const Color& published) {
     const Color reflectance = Dipole(medium).TotalDiffuseReflectance();
     EXPECT_LT((reflectance - published).abs().maxCoeff(), 0.02)
@@ -41,8 +41,8 @@ TEST(Dipole, ReflectsWhatWasPublished) {
   expect(SkinMedium(), {0.44, 0.22, 0.13});
 }
 
-// The formula of the paper written down once more, in one channel and long double.
-TEST(Dipole, IsThePublishedProfile) {
+// An independent implementation of the formula in the paper, for one channel in long double.
+TEST(Dipole, MatchesThePublishedProfile) {
   const long double s = 2.19L;
   const long double a = 0.0021L;
   const long double eta = 1.5L;
@@ -62,7 +62,7 @@ TEST(Dipole, IsThePublishedProfile) {
   }
 }
 
-TEST(Dipole, IsTheSameInAnyUnitOfLength) {
+TEST(Dipole, IsIndependentOfTheUnitOfLength) {
   const Dipole in_millimeters(MarbleMedium());
   const Dipole in_meters(InUnits(MarbleMedium(), 1e-3));
   EXPECT_TRUE(in_meters.TotalDiffuseReflectance().isApprox(in_millimeters.TotalDiffuseReflectance(),
@@ -71,7 +71,7 @@ TEST(Dipole, IsTheSameInAnyUnitOfLength) {
                   .isApprox(in_millimeters.DiffuseReflectance(2), 1e-9));
 }
 
-TEST(Dipole, ThatAbsorbsNothingReturnsAllLight) {
+TEST(Dipole, ReturnsAllLightWithoutAbsorption) {
   Medium clear = MarbleMedium();
   clear.absorption.setZero();
   EXPECT_NEAR(Dipole(clear).TotalDiffuseReflectance().x(), 1, 1e-12);

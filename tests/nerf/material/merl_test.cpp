@@ -23,36 +23,37 @@ using ::testing::HasSubstr;
 
 using std::numbers::pi;
 
-TEST(RusinkiewiczAngles, AreThoseOfTheDirectionsTheyGive) {
+TEST(RusinkiewiczAngles, ConvertToDirectionsAndBack) {
   for (std::uint64_t i = 0; i < 1000; ++i) {
     const Eigen::Array3d u = test::Uniform3(5, i);
     const RusinkiewiczAngles angles{1.5 * u.x(), 1.5 * u.y() + 0.01, 3.1 * u.z() + 0.01};
-    const auto [w_o, w_i] = DirectionsOf(angles);
+    const auto [w_o, w_i] = DirectionsFromRusinkiewicz(angles);
     ASSERT_NEAR(w_o.norm(), 1, 1e-12);
-    const RusinkiewiczAngles back = AnglesOf(w_o, w_i);
+    const RusinkiewiczAngles back = RusinkiewiczFromDirections(w_o, w_i);
     ASSERT_NEAR(back.theta_h, angles.theta_h, 1e-9);
     ASSERT_NEAR(back.theta_d, angles.theta_d, 1e-9);
     ASSERT_NEAR(back.phi_d, angles.phi_d, 1e-7);
   }
 }
 
-TEST(RusinkiewiczAngles, OfMirroredDirectionsHaveTheirHalfVectorUp) {
-  const RusinkiewiczAngles angles = AnglesOf(Vector3d(0.6, 0, 0.8), Vector3d(-0.6, 0, 0.8));
+TEST(RusinkiewiczAngles, HaveAnUprightHalfVectorForMirroredDirections) {
+  const RusinkiewiczAngles angles =
+      RusinkiewiczFromDirections(Vector3d(0.6, 0, 0.8), Vector3d(-0.6, 0, 0.8));
   EXPECT_NEAR(angles.theta_h, 0, 1e-12);
   EXPECT_NEAR(angles.theta_d, std::asin(0.6), 1e-12);
 }
 
-TEST(MerlBrdf, WrittenFromAnAnalyticBrdfIsReadBackAsIt) {
+TEST(MerlBrdf, IsCloseToTheTabulatedBrdfAfterWritingAndReading) {
   const test::ScratchFolder scratch;
   const Conductor copper(Color(0.95, 0.64, 0.54), 0.3);
-  MerlBrdf::Measure(copper).Write(scratch.path() / "copper.binary");
+  MerlBrdf::Tabulate(copper).Write(scratch.path() / "copper.binary");
   const MerlBrdf measured = MerlBrdf::Read(scratch.path() / "copper.binary");
   double sum = 0;
   int count = 0;
   for (std::uint64_t i = 0; i < 5000; ++i) {
     const Vector3d w_o = CosineOnHemisphere(test::Uniform3(1, i).head<2>());
     const Vector3d w_i = CosineOnHemisphere(test::Uniform3(2, i).head<2>());
-    if (w_o.z() < 0.2 || w_i.z() < 0.2) continue;  // bins at the horizon are half empty
+    if (w_o.z() < 0.2 || w_i.z() < 0.2) continue;  // bins at the horizon are partly empty
     const Color truth = copper.Eval(w_o, w_i);
     const double error = ((measured.Eval(w_o, w_i) - truth) / truth).abs().maxCoeff();
     ASSERT_LT(error, 0.1);
@@ -62,8 +63,8 @@ TEST(MerlBrdf, WrittenFromAnAnalyticBrdfIsReadBackAsIt) {
   EXPECT_LT(sum / count, 0.005);
 }
 
-TEST(MerlBrdf, OfALambertianIsConstantUpToTheHorizon) {
-  const MerlBrdf measured = MerlBrdf::Measure(Lambert(Color(0.5, 0.3, 0.2)));
+TEST(MerlBrdf, IsConstantForALambertianUpToTheHorizon) {
+  const MerlBrdf measured = MerlBrdf::Tabulate(Lambert(Color(0.5, 0.3, 0.2)));
   for (std::uint64_t i = 0; i < 2000; ++i) {
     const Vector3d w_o = CosineOnHemisphere(test::Uniform3(1, i).head<2>());
     const Vector3d w_i = CosineOnHemisphere(test::Uniform3(2, i).head<2>());
@@ -72,7 +73,7 @@ TEST(MerlBrdf, OfALambertianIsConstantUpToTheHorizon) {
   }
 }
 
-TEST(MerlBrdf, ThatIsCutShortOrOfOtherSizesIsRefusedByName) {
+TEST(MerlBrdf, RejectsInvalidFilesByName) {
   const test::ScratchFolder scratch;
   const auto error = [&](const std::string& bytes) {
     const auto file = scratch.Write("a.binary", bytes);
@@ -84,7 +85,7 @@ TEST(MerlBrdf, ThatIsCutShortOrOfOtherSizesIsRefusedByName) {
     const std::int32_t sizes[] = {a, b, c};
     return std::string(reinterpret_cast<const char*>(sizes), sizeof sizes);
   };
-  EXPECT_THAT(error(""), HasSubstr("no MERL BRDF"));
+  EXPECT_THAT(error(""), HasSubstr("not a MERL BRDF"));
   EXPECT_THAT(error(header(90, 90, 360)), HasSubstr("90 x 90 x 360"));
   EXPECT_THAT(error(header(90, 90, 180) + std::string(1000, '\0')),
               AllOf(HasSubstr("1012 bytes"), HasSubstr("34992012")));

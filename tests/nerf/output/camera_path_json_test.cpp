@@ -46,7 +46,7 @@ class CameraPathJson : public testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("nerf_path_json_" + std::to_string(::getpid()));
 };
 
-// OpenGL axes: at z = 2 with no rotation, the camera looks down to the origin.
+// OpenGL axes: at z = 2 without rotation, the camera looks down at the origin.
 const json kAboveOrigin = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 2, 0, 0, 0, 1};
 const json kNested = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 2}, {0, 0, 0, 1}};
 
@@ -61,7 +61,7 @@ json OneCamera(const json& matrix) {
 
 void ExpectLooksDownAtTheOrigin(const PathPose& pose) {
   EXPECT_LT((pose.world_from_camera.translation() - Eigen::Vector3d(0, 0, 2)).norm(), 1e-12);
-  // In OpenCV axes the origin lies ahead, and the world's y axis is up in the picture.
+  // In OpenCV axes the origin is ahead, and the y axis of the world is up in the picture.
   EXPECT_LT((pose.world_from_camera.inverse() * Eigen::Vector3d::Zero() - Eigen::Vector3d(0, 0, 2))
                 .norm(),
             1e-12);
@@ -71,7 +71,7 @@ void ExpectLooksDownAtTheOrigin(const PathPose& pose) {
   EXPECT_NEAR(up.x(), PrincipalPoint(pose.camera).x(), 1e-9);
 }
 
-TEST_F(CameraPathJson, ACameraAboveTheOriginLooksAtIt) {
+TEST_F(CameraPathJson, ReadsOpenGLAxes) {
   const CameraPath path = Read(OneCamera(kAboveOrigin));
   ASSERT_EQ(path.poses.size(), 1);
   ExpectLooksDownAtTheOrigin(path.poses[0]);
@@ -115,14 +115,14 @@ TEST_F(CameraPathJson, TimeComesFromFpsElseFromSeconds) {
   EXPECT_DOUBLE_EQ(Read(file).frames_per_second, 30);
 }
 
-TEST_F(CameraPathJson, OtherKindsOfCameraAreRefusedByName) {
+TEST_F(CameraPathJson, RejectsOtherTypesOfCameraByName) {
   json file = OneCamera(kAboveOrigin);
   file["camera_type"] = "equirectangular";
   EXPECT_THAT(ErrorOf(file.dump()), testing::AllOf(HasSubstr("path.json"), HasSubstr("camera_type"),
                                                    HasSubstr("equirectangular")));
 }
 
-TEST_F(CameraPathJson, WhatIsWrongIsNamed) {
+TEST_F(CameraPathJson, ErrorsNameFileAndKey) {
   const auto with = [](const std::string& pointer, const json& value) {
     json file = OneCamera(kAboveOrigin);
     file[json::json_pointer(pointer)] = value;
@@ -143,7 +143,7 @@ TEST_F(CameraPathJson, WhatIsWrongIsNamed) {
   EXPECT_THAT(ErrorOf(with(matrix, json::array({1, 2, 3}))), named);
   EXPECT_THAT(ErrorOf(with(matrix, "unit")), named);
   EXPECT_THAT(ErrorOf(with(matrix + "/0", "one")), named);
-  EXPECT_THAT(ErrorOf(with(matrix + "/0", 5)), named);  // no rotation
+  EXPECT_THAT(ErrorOf(with(matrix + "/0", 5)), named);  // not a rotation
   EXPECT_THAT(ErrorOf(with(matrix, {{{{1}}}, 1})), named);
   EXPECT_THAT(Catch([&] { ReadCameraPath(folder_ / "none.json"); }), HasSubstr("none.json"));
 }
@@ -158,13 +158,13 @@ class PoseJson : public CameraPathJson {
   PosedImages images_;
 };
 
-TEST_F(PoseJson, TakesTheFirstCameraWhereNoLensIsGiven) {
+TEST_F(PoseJson, UsesTheFirstCameraByDefault) {
   const PathPose pose = Read({{"transform_matrix", kNested}});
   ExpectLooksDownAtTheOrigin(pose);
   EXPECT_EQ(pose.camera, images_.cameras[0]);
 }
 
-TEST_F(PoseJson, TakesAFieldOfView) {
+TEST_F(PoseJson, ReadsAFieldOfView) {
   const PathPose pose =
       Read({{"camera_to_world", kAboveOrigin}, {"fov", 90}, {"w", 200}, {"h", 100}});
   ExpectLooksDownAtTheOrigin(pose);
@@ -172,7 +172,7 @@ TEST_F(PoseJson, TakesAFieldOfView) {
   EXPECT_EQ(Read({{"camera_to_world", kAboveOrigin}, {"fov", 90}}).camera.width, 80);
 }
 
-TEST_F(PoseJson, TakesTheLensKeysOfATransformsJson) {
+TEST_F(PoseJson, ReadsTheLensKeysOfATransformsJson) {
   const Camera camera =
       Read({{"transform_matrix", kNested}, {"fl_x", 50}, {"w", 40}, {"h", 30}, {"k1", 0.2}}).camera;
   EXPECT_EQ(camera.width, 40);

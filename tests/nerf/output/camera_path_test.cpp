@@ -69,7 +69,7 @@ void ExpectRotations(const CameraPath& path) {
   }
 }
 
-// Largest change from frame to frame, the step from the last to the first included.
+// The largest change between frames, including that from the last to the first.
 double LongestStep(const CameraPath& path) {
   double longest = 0;
   for (std::size_t i = 0; i < path.poses.size(); ++i) {
@@ -101,7 +101,7 @@ TEST(LookAt, WorksAlongUp) {
   EXPECT_LT((pose.linear().col(2) + Vector3d::UnitZ()).norm(), 1e-12);
 }
 
-TEST(OrbitPath, StaysOnTheCirclesRadiusAndHeightAndLooksAtTheTarget) {
+TEST(OrbitPath, IsACircleThatLooksAtTheTarget) {
   const CameraPath path = Orbit(Ring(9), 40);
   ASSERT_EQ(path.poses.size(), 40);
   ExpectRotations(path);
@@ -110,7 +110,7 @@ TEST(OrbitPath, StaysOnTheCirclesRadiusAndHeightAndLooksAtTheTarget) {
     EXPECT_NEAR(offset.head<2>().norm(), 3, 1e-6);
     EXPECT_NEAR(offset.z(), 1.5, 1e-6);
     EXPECT_LT((Forward(pose) + offset.normalized()).norm(), 1e-6);
-    EXPECT_LT(pose.world_from_camera.linear()(2, 1), 0);  // the camera's y points down
+    EXPECT_LT(pose.world_from_camera.linear()(2, 1), 0);  // y of the camera points down
   }
 }
 
@@ -121,7 +121,7 @@ TEST(OrbitPath, StartsAtTheFirstCameraAndCloses) {
   EXPECT_NEAR(LongestStep(path), 2 * 3 * std::sin(kPi / 40), 1e-6);
 }
 
-TEST(OrbitPath, LooksOutwardsWhereTheCamerasDo) {
+TEST(OrbitPath, LooksOutwardsIfTheCamerasDo) {
   PosedImages posed = WithCamera();
   for (int i = 0; i < 8; ++i) {
     const Vector3d out(std::cos(kPi * i / 4), std::sin(kPi * i / 4), 0);
@@ -132,7 +132,7 @@ TEST(OrbitPath, LooksOutwardsWhereTheCamerasDo) {
   }
 }
 
-TEST(OrbitPath, TakesTheFirstLensWithoutItsDistortion) {
+TEST(OrbitPath, UsesTheFirstLensWithoutDistortion) {
   const Camera camera = Orbit(Ring(5), 3).poses[2].camera;
   EXPECT_EQ(camera.model, CameraModel::kPinhole);
   EXPECT_EQ(camera.width, 80);
@@ -140,7 +140,7 @@ TEST(OrbitPath, TakesTheFirstLensWithoutItsDistortion) {
   EXPECT_THAT(camera.params, testing::ElementsAre(71, 71, 41, 29));
 }
 
-TEST(OrbitPath, CountsSeconds) {
+TEST(OrbitPath, HasATimeForEachPose) {
   const CameraPath path = Orbit(Ring(5), 4);
   EXPECT_DOUBLE_EQ(path.poses[0].seconds, 0);
   EXPECT_DOUBLE_EQ(path.poses[3].seconds, 3 / path.frames_per_second);
@@ -181,7 +181,7 @@ TEST(SpiralPath, OfOneCameraStaysThere) {
   }
 }
 
-TEST(TrainingPath, MeetsEveryCameraInOrderOfName) {
+TEST(TrainingPath, PassesThroughEveryCameraInOrderOfName) {
   PosedImages ring = Ring(7);
   const std::vector<PosedImage> by_name = ring.images;
   std::ranges::reverse(ring.images);
@@ -199,7 +199,7 @@ TEST(TrainingPath, MeetsEveryCameraInOrderOfName) {
 
 TEST(TrainingPath, MovesAndTurnsWithoutJerks) {
   const CameraPath path = TrainingPath(Ring(8), 7 * 50 + 1);
-  // Away from the ends, where the speed is that of the ring, it changes little between frames.
+  // Except at the ends, the speed changes little between frames.
   for (std::size_t i = 51; i + 52 < path.poses.size(); ++i) {
     const auto turn = [&](std::size_t k) {
       return Eigen::AngleAxisd(path.poses[k].world_from_camera.linear().transpose() *
@@ -214,7 +214,7 @@ TEST(TrainingPath, MovesAndTurnsWithoutJerks) {
   }
 }
 
-TEST(TrainingPath, LeavesHeldOutCamerasAside) {
+TEST(TrainingPath, IgnoresHeldOutCameras) {
   PosedImages ring = Ring(3);
   ring.images[0].split = Split::kTest;
   const CameraPath path = TrainingPath(ring, 2);
@@ -223,7 +223,7 @@ TEST(TrainingPath, LeavesHeldOutCamerasAside) {
   EXPECT_THROW(TrainingPath(ring, 2), InputError);
 }
 
-TEST(CameraPaths, NeedCamerasAndAReasonableNumberOfFrames) {
+TEST(CameraPaths, RejectNoCamerasAndInvalidNumbersOfFrames) {
   for (const auto make : {Orbit, Spiral, TrainingPath}) {
     EXPECT_THROW(make(WithCamera(), 5), InputError);
     EXPECT_THROW(make(Ring(5), 0), InputError);

@@ -16,14 +16,15 @@ Eigen::Vector3f At(const Image& image, int x, int y) {
   return Eigen::Map<const Eigen::Vector3f>(image.At(x, y));
 }
 
-TEST(Turbo, MeetsItsTable) {
-  // Entries 64, 128 and 192 of Mikhailov's table; the polynomial stays within a tenth.
+TEST(Turbo, MatchesItsTable) {
+  // Entries 64, 128 and 192 of the table by Mikhailov; the error of the polynomial is below a
+  // tenth.
   EXPECT_LT((Turbo(64 / 255.0f) - Eigen::Vector3f(0.15844f, 0.73551f, 0.92305f)).norm(), 0.1f);
   EXPECT_LT((Turbo(128 / 255.0f) - Eigen::Vector3f(0.64362f, 0.98999f, 0.23356f)).norm(), 0.1f);
   EXPECT_LT((Turbo(192 / 255.0f) - Eigen::Vector3f(0.99297f, 0.50160f, 0.13530f)).norm(), 0.1f);
 }
 
-TEST(Turbo, GoesFromBlueToRedAndStaysAColour) {
+TEST(Turbo, GoesFromBlueToRed) {
   for (int i = -10; i <= 110; ++i) {
     const Eigen::Vector3f color = Turbo(static_cast<float>(i) / 100);
     EXPECT_GE(color.minCoeff(), 0);
@@ -53,7 +54,7 @@ TEST(ColorizeDepth, NearIsRedAndFarIsBlue) {
   EXPECT_LT((At(colors, 50, 0) - Turbo(0.49f)).norm(), 0.05f);
 }
 
-TEST(ColorizeDepth, OutliersAndTransparentPixelsDoNotSetTheRange) {
+TEST(ColorizeDepth, IgnoresOutliersAndTransparentPixelsInTheRange) {
   Image depth(200, 1, 1);
   Image opacity = ConstantImage(200, 1, 1, 1);
   for (int x = 0; x < 200; ++x) *depth.At(x, 0) = 1 + static_cast<float>(x) / 199;
@@ -66,7 +67,7 @@ TEST(ColorizeDepth, OutliersAndTransparentPixelsDoNotSetTheRange) {
   EXPECT_EQ(At(colors, 192, 0), Eigen::Vector3f::Constant(0.5f));
 }
 
-TEST(ColorizeDepth, IsGreyWhereNothingIsSeen) {
+TEST(ColorizeDepth, TransparentPixelsAreGrey) {
   const Image grey = ColorizeDepth(ConstantImage(4, 3, 1, 0), ConstantImage(4, 3, 1, 0));
   EXPECT_EQ(At(grey, 2, 1), Eigen::Vector3f::Constant(0.5f));
   const Image undefined = ColorizeDepth(
@@ -90,7 +91,7 @@ TEST(ColorizeError, GrowsWithTheDifference) {
   EXPECT_LT((At(colors, 2, 0) - Eigen::Vector3f::Ones()).norm(), 1e-5f);
 }
 
-TEST(ColorMaps, RefuseImagesThatDoNotMatch) {
+TEST(ColorMaps, RejectImagesOfDifferentSizes) {
   EXPECT_THROW(ColorizeError(Image(3, 4, 3), Image(4, 3, 3)), InputError);
   EXPECT_THROW(ColorizeDepth(Image(3, 4, 1), Image(4, 3, 1)), InputError);
 }

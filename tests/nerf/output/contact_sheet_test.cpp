@@ -22,7 +22,7 @@ int Count(const Image& image, float value) {
   return count;
 }
 
-TEST(ContactSheet, HoldsTruthRenderingAndDifference) {
+TEST(ContactSheet, ContainsTruthRenderingAndDifference) {
   const std::vector<ContactSheetRow> rows = {
       {"", ConstantImage(30, 20, 3, 0.25f), ConstantImage(30, 20, 3, 0.25f)}};
   const Image sheet = ContactSheet(rows);
@@ -51,13 +51,13 @@ TEST(ContactSheet, ReducesLargePicturesToTwoThousandPixels) {
   EXPECT_GT(sheet.width, 1500);
 }
 
-TEST(ContactSheet, LaysAlphaOverWhite) {
+TEST(ContactSheet, CompositesAlphaOverWhite) {
   const std::vector<ContactSheetRow> rows = {
       {"", ConstantImage(9, 9, 4, 0.5f), ConstantImage(9, 9, 3, 0.75f)}};
   EXPECT_EQ(Count(ContactSheet(rows), 0.75f), 2 * 81);
 }
 
-TEST(ContactSheet, CaptionsStayOffThePictures) {
+TEST(ContactSheet, CaptionsDoNotOverlapThePictures) {
   std::vector<ContactSheetRow> rows = {
       {"r_8.png  31.42 dB", ConstantImage(90, 20, 3, 0.25f), ConstantImage(90, 20, 3, 0.25f)}};
   EXPECT_EQ(Count(ContactSheet(rows), 0.25f), 2 * 90 * 20);
@@ -65,7 +65,7 @@ TEST(ContactSheet, CaptionsStayOffThePictures) {
 
 TEST(ContactSheet, WithoutRowsIsEmpty) { EXPECT_TRUE(ContactSheet({}).pixels.empty()); }
 
-TEST(ContactSheet, RefusesPicturesThatDoNotMatch) {
+TEST(ContactSheet, RejectsPicturesOfDifferentSizes) {
   const std::vector<ContactSheetRow> rows = {{"", Image(3, 4, 3), Image(4, 3, 3)}};
   EXPECT_THROW(ContactSheet(rows), InputError);
 }

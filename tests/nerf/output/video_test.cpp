@@ -20,7 +20,7 @@ namespace bp = boost::process;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// An empty PATH for as long as it lives.
+// Makes PATH empty during its lifetime.
 class WithoutPrograms {
  public:
   WithoutPrograms() { ::setenv("PATH", "/nonexistent", 1); }
@@ -76,7 +76,7 @@ std::string Probe(const fs::path& video) {
   return text;
 }
 
-TEST_F(Video, FiveFramesMakeAFilmThatPlayersRead) {
+TEST_F(Video, EncodesFramesAsPlayableVideo) {
   ASSERT_TRUE(FfmpegIsInstalled()) << "these tests need the program ffmpeg";
   WriteFrames(5, 33, 21);  // odd: padded
   WriteVideo(frames_, 5, 12.5, folder_ / "film.mp4");
@@ -85,10 +85,10 @@ TEST_F(Video, FiveFramesMakeAFilmThatPlayersRead) {
                            "r_frame_rate=25/2", "nb_read_frames=5"}) {
     EXPECT_THAT(found, HasSubstr(line));
   }
-  EXPECT_EQ(NumFiles(), 2);  // the frames' folder and the film
+  EXPECT_EQ(NumFiles(), 2);  // the folder of the frames, and the film
 }
 
-TEST_F(Video, FramesOfAnEarlierRenderingStayOut) {
+TEST_F(Video, IgnoresFramesOfAnEarlierRendering) {
   WriteFrames(6, 32, 32);
   WriteVideo(frames_, 3, 30, folder_ / "film.mp4");
   EXPECT_THAT(Probe(folder_ / "film.mp4"), HasSubstr("nb_read_frames=3"));
@@ -96,17 +96,17 @@ TEST_F(Video, FramesOfAnEarlierRenderingStayOut) {
               HasSubstr("00006.png"));
 }
 
-TEST_F(Video, AFailureGivesFfmpegsWordsAndLeavesNothing) {
+TEST_F(Video, ErrorsIncludeTheMessageOfFfmpeg) {
   WriteFrames(1, 32, 32);
   std::ofstream(frames_ / FrameName(0)) << "no picture";
   const std::string error = ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "film.mp4"); });
   EXPECT_THAT(error, testing::AllOf(HasSubstr("film.mp4"), HasSubstr("ffmpeg failed: ")));
-  EXPECT_EQ(error.find("it said nothing"), std::string::npos);
+  EXPECT_EQ(error.find("no message"), std::string::npos);
   EXPECT_EQ(error.find('\n'), std::string::npos);
   EXPECT_EQ(NumFiles(), 1);
 }
 
-TEST_F(Video, SaysThatFfmpegIsMissing) {
+TEST_F(Video, ReportsThatFfmpegIsMissing) {
   WriteFrames(1, 32, 32);
   const WithoutPrograms nothing_installed;
   EXPECT_FALSE(FfmpegIsInstalled());
@@ -114,14 +114,14 @@ TEST_F(Video, SaysThatFfmpegIsMissing) {
               HasSubstr("install"));
 }
 
-TEST_F(Video, WrongEndingsRatesAndFoldersAreNamed) {
+TEST_F(Video, ErrorsNameInvalidExtensionsRatesAndFolders) {
   EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "film.mp4"); }),
               HasSubstr("00000.png"));
   WriteFrames(1, 32, 32);
   EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "film.avi"); }),
               HasSubstr(".mp4"));
   EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 0, folder_ / "film.mp4"); }),
-              HasSubstr("frames a second"));
+              HasSubstr("frames per second"));
   EXPECT_THAT(ErrorOf([&] { WriteVideo(frames_, 1, 30, folder_ / "no" / "film.mp4"); }),
               HasSubstr("does not exist"));
 }

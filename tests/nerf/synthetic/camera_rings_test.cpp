@@ -25,7 +25,7 @@ double DegreesBetween(const Vector3d& a, const Vector3d& b) {
          std::numbers::pi;
 }
 
-TEST(CameraRings, GiveAsManyViewsAsAskedFor) {
+TEST(CameraRings, HaveTheRequestedNumberOfViews) {
   for (const int views : {2, 3, 11, 12, 23, 24, 36, 101}) {
     SampleOptions options;
     options.views = views;
@@ -37,7 +37,7 @@ TEST(CameraRings, GiveAsManyViewsAsAskedFor) {
   }
 }
 
-TEST(CameraRings, ArePosesOfUprightCamerasThatLookAtTheSubject) {
+TEST(CameraRings, AreUprightAndLookAtTheSubject) {
   const PosedImages posed = CameraRings({});
   const Camera& camera = posed.cameras.at(0);
   for (const auto& image : posed.images) {
@@ -55,7 +55,7 @@ TEST(CameraRings, ArePosesOfUprightCamerasThatLookAtTheSubject) {
   }
 }
 
-TEST(CameraRings, NeighboursSeeTheSubjectFromNearlyTheSameDirection) {
+TEST(CameraRings, NeighboursHaveSimilarViewingDirections) {
   const PosedImages posed = CameraRings({});
   for (const auto& image : posed.images) {
     int neighbours = 0;
@@ -77,7 +77,7 @@ TEST(CameraRings, SurroundTheSubject) {
   EXPECT_LT(mean.norm(), 0.2);
 }
 
-TEST(CameraRings, AnotherSeedMovesEveryCameraALittle) {
+TEST(CameraRings, AnotherSeedMovesEveryCameraSlightly) {
   SampleOptions other;
   other.seed = 2;
   const PosedImages a = CameraRings({});
@@ -91,7 +91,7 @@ TEST(CameraRings, AnotherSeedMovesEveryCameraALittle) {
   }
 }
 
-TEST(SampleOptions, OutOfRangeAreErrorsThatNameTheFlag) {
+TEST(SampleOptions, ErrorsNameTheFlag) {
   const auto error_with = [](auto change) {
     SampleOptions options;
     change(options);

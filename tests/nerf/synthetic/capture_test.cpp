@@ -24,7 +24,7 @@ SampleOptions Small() {
   return options;
 }
 
-// Rendered once for all tests that only look at it.
+// Rendered once for all tests that do not change it.
 const Capture& SmallCapture() {
   static const Capture capture = MakeCapture(Small());
   return capture;
@@ -35,7 +35,7 @@ Vector3d Load(const Image& image, int x, int y) {
   return {p[0], p[1], p[2]};
 }
 
-TEST(Capture, IsTheSameForAnyNumberOfThreads) {
+TEST(Capture, IsIndependentOfTheNumberOfThreads) {
   SampleOptions options = Small();
   options.threads = 1;
   const Capture one = MakeCapture(options);
@@ -61,7 +61,7 @@ TEST(Capture, HasAViewForEachPose) {
   }
 }
 
-TEST(Capture, HoldsColoursAlbedosAndUnitNormalsInRange) {
+TEST(Capture, HasValuesInRange) {
   for (const View& view : SmallCapture().views) {
     for (const Image* image : {&view.photo, &view.albedo}) {
       for (const float value : image->pixels) {
@@ -79,7 +79,7 @@ TEST(Capture, HoldsColoursAlbedosAndUnitNormalsInRange) {
   }
 }
 
-TEST(Capture, NormalsLookAtTheCamera) {
+TEST(Capture, NormalsFaceTheCamera) {
   const Capture& capture = SmallCapture();
   const auto& pose = capture.posed.images[0].world_from_camera;
   for (int y = 0; y < 24; ++y) {
@@ -90,8 +90,8 @@ TEST(Capture, NormalsLookAtTheCamera) {
   }
 }
 
-// A point that depth and pose of view A give must lie on the ray of view B through its projection,
-// at the distance that B's own depth says, or behind what B sees there.
+// A point from the depth and pose of view A, projected into view B, must be at the depth of B
+// there, or behind it.
 TEST(Capture, DepthsOfDifferentViewsAgree) {
   SampleOptions options = Small();
   options.width = 80;
@@ -115,7 +115,7 @@ TEST(Capture, DepthsOfDifferentViewsAgree) {
         const int u = static_cast<int>(std::floor(pixel->x()));
         const int v = static_cast<int>(std::floor(pixel->y()));
         if (u < 1 || v < 1 || u >= options.width - 1 || v >= options.height - 1) continue;
-        // What B measures within a pixel of the projection, give or take the width of a pixel.
+        // The range of depths of B within a pixel of the projection.
         const double footprint = x_in_b.norm() / FocalLength(camera);
         float nearest = 1e9f, farthest = 0;
         for (int dv = -1; dv <= 1; ++dv) {
@@ -125,7 +125,8 @@ TEST(Capture, DepthsOfDifferentViewsAgree) {
           }
         }
         ++seen;
-        ASSERT_GE(x_in_b.norm(), nearest - footprint) << "A sees through what B sees";
+        ASSERT_GE(x_in_b.norm(), nearest - footprint)
+            << "the point of A is in front of the surface seen by B";
         agreed += x_in_b.norm() <= farthest + 1e-3;
       }
     }
@@ -134,7 +135,7 @@ TEST(Capture, DepthsOfDifferentViewsAgree) {
   EXPECT_GT(agreed, 0.6 * seen);  // the rest is hidden from B
 }
 
-TEST(Capture, PixelCentresLieAtHalves) {
+TEST(Capture, PixelCentersAreAtHalves) {
   const Capture& capture = SmallCapture();
   const Scene scene = BuiltInScene();
   const auto& pose = capture.posed.images[2].world_from_camera;
@@ -157,7 +158,7 @@ TEST(RenderView, AveragesRadianceInLinearLightOverThePixel) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(LinearFromSrgb(view.photo.pixels[c]), 0.5, 0.01);
 }
 
-TEST(RenderViews, PassOnWhatTheConsumerThrows) {
+TEST(RenderViews, PassesOnExceptionsOfTheConsumer) {
   const Capture& capture = SmallCapture();
   EXPECT_THROW(RenderViews(BuiltInScene(), capture.posed, Small(),
                            [](int, const View&) { throw std::runtime_error("full"); }),

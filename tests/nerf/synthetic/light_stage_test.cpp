@@ -24,8 +24,8 @@ using Eigen::Vector3d;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// The whole claim: one light at a time, summed, is the subject under the environment.
-TEST(LightStage, RelitIsWhatIsSeenDirectlyUnderTheEnvironment) {
+// The weighted sum of images under one light each is the subject under the environment.
+TEST(LightStage, RelightingMatchesDirectRendering) {
   const auto map = std::make_shared<EnvironmentMap>(test::SmoothEnvironment());
   const StageCamera camera = LightStageCamera(48, 27);
   SurfaceScene subject = LightStageSubject();
@@ -44,7 +44,7 @@ TEST(LightStage, RelitIsWhatIsSeenDirectlyUnderTheEnvironment) {
             static_cast<float>(weights[i][static_cast<int>(p % 3)]) * image.pixels[p];
       }
     }
-    const double db = Psnr(Exposed(direct, stops), Exposed(relit, stops));
+    const double db = Psnr(WithExposure(direct, stops), WithExposure(relit, stops));
     std::cout << "relit against direct, " << count << " lights: " << db << " dB\n";
     return db;
   };
@@ -54,21 +54,20 @@ TEST(LightStage, RelitIsWhatIsSeenDirectlyUnderTheEnvironment) {
   EXPECT_GT(many, few + 3);
 }
 
-TEST(LightStage, DressesTheThirdBallInAMeasuredBrdf) {
+TEST(LightStage, UsesAMeasuredBrdfForTheThirdBall) {
   const StageCamera camera = LightStageCamera(48, 27);
   const DirectionalLight light{Vector3d(0, 0.5, 1).normalized()};
   SurfaceScene gold = LightStageSubject();
   const Conductor analytic(Color(1.00, 0.77, 0.34), 0.25);
   SurfaceScene measured =
-      LightStageSubject(std::make_shared<MerlBrdf>(MerlBrdf::Measure(analytic)));
-  SurfaceScene matt = LightStageSubject(std::make_shared<Lambert>(Color::Constant(0.5)));
+      LightStageSubject(std::make_shared<MerlBrdf>(MerlBrdf::Tabulate(analytic)));
+  SurfaceScene diffuse = LightStageSubject(std::make_shared<Lambert>(Color::Constant(0.5)));
   const Image truth = RenderUnder(gold, light, camera);
   EXPECT_GT(Psnr(RenderUnder(measured, light, camera), truth), 35);
-  EXPECT_LT(Psnr(RenderUnder(matt, light, camera), truth), 30);
+  EXPECT_LT(Psnr(RenderUnder(diffuse, light, camera), truth), 30);
 }
 
-// Each term adds light, or takes it away: no light passes unseen from one to the next.
-TEST(LightStage, ShadowsTakeLightAndBouncesGiveSomeBack) {
+TEST(LightStage, ShadowsDarkenAndBouncesBrighten) {
   const StageCamera camera = LightStageCamera(32, 18);
   SurfaceScene subject = LightStageSubject();
   const DirectionalLight light{Vector3d(0.6, 0.7, 0.4).normalized()};
@@ -100,18 +99,18 @@ TEST(LightStage, WritesACaptureThatCanBeRelit) {
   EXPECT_TRUE(WriteLightStage(stage, options, [] { return true; }));
   EXPECT_EQ(FindOlatCapture(stage, {}).images.size(), 12u);
   EXPECT_TRUE(fs::exists(stage / "truth/direct.exr"));
-  // A smaller one in its place leaves nothing of it.
+  // A smaller capture in its place replaces it completely.
   options.lights = 4;
   options.environment = "";
   EXPECT_TRUE(WriteLightStage(stage, options, [] { return true; }));
   EXPECT_EQ(FindOlatCapture(stage, {}).images.size(), 4u);
-  // Stopped half-way it is none.
+  // An interrupted capture is not found.
   EXPECT_FALSE(WriteLightStage(stage, options, [] { return false; }));
   EXPECT_THAT(test::InputErrorOf([&] { FindOlatCapture(stage, {}); }), HasSubstr("stage"));
 }
 
-// Names alone do not make a file ours: only the mark of a capture of ours does.
-TEST(LightStage, LeavesFilesOfOthersAlone) {
+// Only the mark identifies a capture; files with the same names are not overwritten.
+TEST(LightStage, DoesNotOverwriteForeignFiles) {
   LightStageOptions options;
   options.lights = 3;
   options.width = options.height = 4;
@@ -130,7 +129,7 @@ TEST(LightStage, LeavesFilesOfOthersAlone) {
   EXPECT_THAT(write(scratch.path() / "file"), HasSubstr("is a file"));
 }
 
-TEST(LightStage, ThatWasStoppedIsReplaced) {
+TEST(LightStage, ReplacesAnInterruptedCapture) {
   const test::ScratchFolder scratch;
   LightStageOptions options;
   options.lights = 3;
@@ -141,7 +140,7 @@ TEST(LightStage, ThatWasStoppedIsReplaced) {
   EXPECT_TRUE(WriteLightStage(scratch.path(), options, [] { return true; }));
 }
 
-TEST(LightStage, RefusesOptionsOutOfRangeAndFoldersOfOthers) {
+TEST(LightStage, RejectsOptionsOutOfRangeAndForeignFolders) {
   const test::ScratchFolder scratch;
   LightStageOptions options;
   options.lights = 2;

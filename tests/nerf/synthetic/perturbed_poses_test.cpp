@@ -19,10 +19,10 @@ using Eigen::Vector3d;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Each camera's error, in units of the standard deviations that the header promises.
-double SquaredError(const Isometry3d& truth, const Isometry3d& wrong) {
-  const Vector3d shift = wrong.translation() - truth.translation();
-  const AngleAxisd turn(wrong.linear() * truth.linear().transpose());
+// The squared error of a camera in units of the documented standard deviations.
+double SquaredError(const Isometry3d& truth, const Isometry3d& perturbed) {
+  const Vector3d shift = perturbed.translation() - truth.translation();
+  const AngleAxisd turn(perturbed.linear() * truth.linear().transpose());
   return shift.squaredNorm() / (0.012 * 0.012) +
          turn.angle() * turn.angle() / (0.4 * kDegree * 0.4 * kDegree);
 }
@@ -30,36 +30,36 @@ double SquaredError(const Isometry3d& truth, const Isometry3d& wrong) {
 class PerturbedPoses : public testing::Test {
  protected:
   const PosedImages truth_ = CameraRings({});
-  const PosedImages wrong_ = WithPerturbedPoses(truth_, 3);
+  const PosedImages perturbed_ = WithPerturbedPoses(truth_, 3);
 
-  // Of all cameras with wrong poses, after something was done to the wrong ones.
+  // The sum over all perturbed cameras after a change of their perturbed poses.
   double Total(const std::function<Isometry3d(const Isometry3d&)>& change) const {
     double total = 0;
     for (int i = 0; i < static_cast<int>(truth_.images.size()); ++i) {
       if (IsHeldOut(i)) continue;
       total += SquaredError(truth_.images[i].world_from_camera,
-                            change(wrong_.images[i].world_from_camera));
+                            change(perturbed_.images[i].world_from_camera));
     }
     return total;
   }
 };
 
-TEST_F(PerturbedPoses, AreWrongByAsMuchAsIsSaidAndNotWhereTheyJudge) {
-  int wrong = 0;
+TEST_F(PerturbedPoses, HaveTheDocumentedErrorExceptHeldOutOnes) {
+  int perturbed = 0;
   for (int i = 0; i < static_cast<int>(truth_.images.size()); ++i) {
     const bool same =
-        truth_.images[i].world_from_camera.isApprox(wrong_.images[i].world_from_camera, 1e-15);
+        truth_.images[i].world_from_camera.isApprox(perturbed_.images[i].world_from_camera, 1e-15);
     EXPECT_EQ(same, IsHeldOut(i)) << i;
-    if (!same) ++wrong;
+    if (!same) ++perturbed;
   }
-  // Six errors a camera, less the seven numbers of a similarity.
-  const double expected = 6.0 * wrong - 7;
+  // Six degrees of freedom per camera, less the seven of a similarity.
+  const double expected = 6.0 * perturbed - 7;
   EXPECT_NEAR(Total([](const Isometry3d& pose) { return pose; }), expected,
               4 * std::sqrt(2 * expected));
 }
 
-TEST_F(PerturbedPoses, WouldNotBeBetterIfAllWereMovedAsOne) {
-  const double as_it_is = Total([](const Isometry3d& pose) { return pose; });
+TEST_F(PerturbedPoses, AreNotImprovedByASimilarity) {
+  const double unchanged = Total([](const Isometry3d& pose) { return pose; });
   for (const double step : {-1e-3, 1e-3}) {
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3d along = Vector3d::Unit(axis);
@@ -67,36 +67,36 @@ TEST_F(PerturbedPoses, WouldNotBeBetterIfAllWereMovedAsOne) {
                   pose.translation() += step * along;
                   return pose;
                 }),
-                as_it_is);
+                unchanged);
       EXPECT_GT(Total([&](const Isometry3d& pose) { return AngleAxisd(step, along) * pose; }),
-                as_it_is);
+                unchanged);
     }
     EXPECT_GT(Total([&](Isometry3d pose) {
                 pose.translation() *= 1 + step;
                 return pose;
               }),
-              as_it_is);
+              unchanged);
   }
 }
 
-TEST_F(PerturbedPoses, AreOthersWithAnotherSeedAndTheSameWithTheSame) {
-  const Isometry3d one = wrong_.images[1].world_from_camera;
+TEST_F(PerturbedPoses, DependOnTheSeedAlone) {
+  const Isometry3d one = perturbed_.images[1].world_from_camera;
   EXPECT_TRUE(WithPerturbedPoses(truth_, 3).images[1].world_from_camera.isApprox(one, 0));
   EXPECT_FALSE(WithPerturbedPoses(truth_, 4).images[1].world_from_camera.isApprox(one, 1e-6));
 }
 
-TEST_F(PerturbedPoses, ShowInTheReprojectionErrorsAndLeavePointsWhereTheyAre) {
+TEST_F(PerturbedPoses, ChangeReprojectionErrorsButNotPoints) {
   PosedImages truth = truth_;
   SampleOptions options;
   options.scenario = Scenario::kPoseRefinement;
   truth.points = SparsePoints(SceneFor(options.scenario), truth, options);
-  const PosedImages wrong = WithPerturbedPoses(truth, 3);
+  const PosedImages perturbed = WithPerturbedPoses(truth, 3);
   double before = 0, after = 0;
   for (std::size_t p = 0; p < truth.points.size(); ++p) {
-    EXPECT_EQ(wrong.points[p].x_in_world, truth.points[p].x_in_world);
-    EXPECT_EQ(wrong.points[p].track[0].pixel, truth.points[p].track[0].pixel);
+    EXPECT_EQ(perturbed.points[p].x_in_world, truth.points[p].x_in_world);
+    EXPECT_EQ(perturbed.points[p].track[0].pixel, truth.points[p].track[0].pixel);
     before += truth.points[p].reprojection_error;
-    after += wrong.points[p].reprojection_error;
+    after += perturbed.points[p].reprojection_error;
   }
   EXPECT_GT(after, 4 * before);
 }

@@ -46,7 +46,7 @@ std::string Bytes(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(SampleFolder, HoldsPhotographsAndTheTruthApart) {
+TEST(SampleFolder, SeparatesPhotographsAndGroundTruth) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path() / "new" / "demo", Tiny());
   EXPECT_THAT(
@@ -58,7 +58,7 @@ TEST(SampleFolder, HoldsPhotographsAndTheTruthApart) {
                   "truth/view_001.depth.exr", "truth/view_001.normal.exr"));
 }
 
-TEST(SampleFolder, HoldsWhatACaptureInMemoryHolds) {
+TEST(SampleFolder, MatchesACaptureInMemory) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path(), Tiny());
   const Capture capture = MakeCapture(Tiny());
@@ -81,7 +81,7 @@ TEST(SampleFolder, HoldsWhatACaptureInMemoryHolds) {
   EXPECT_EQ(*depth.At(7, 5), *capture.views[1].depth.At(7, 5));
 }
 
-TEST(SampleFolder, WrittenTwiceIsTheSameByteForByte) {
+TEST(SampleFolder, IsReproducible) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path(), Tiny());
   const std::string photo = Bytes(scratch.path() / "images/view_000.png");
@@ -90,7 +90,7 @@ TEST(SampleFolder, WrittenTwiceIsTheSameByteForByte) {
   EXPECT_EQ(Bytes(scratch.path() / "images/view_000.png"), photo);
 }
 
-TEST(SampleFolder, LosesTheViewsThatAnEarlierSampleHadMore) {
+TEST(SampleFolder, RemovesTheRemainingViewsOfAnEarlierSample) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path(), Tiny(2));
   const auto two = NamesIn(scratch.path());
@@ -99,7 +99,7 @@ TEST(SampleFolder, LosesTheViewsThatAnEarlierSampleHadMore) {
   EXPECT_EQ(NamesIn(scratch.path()), two);
 }
 
-TEST(SampleFolder, IsFinishedAfterAnInterruptedRun) {
+TEST(SampleFolder, ReplacesAnInterruptedSample) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path(), Tiny());
   const auto whole = NamesIn(scratch.path());
@@ -110,7 +110,7 @@ TEST(SampleFolder, IsFinishedAfterAnInterruptedRun) {
   EXPECT_EQ(NamesIn(scratch.path()), whole);
 }
 
-TEST(SampleFolder, LetsStandWhatOthersPutBesideImagesAndTruth) {
+TEST(SampleFolder, KeepsOtherSubFolders) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path(), Tiny());
   scratch.Write("run/checkpoint", "x");
@@ -118,7 +118,7 @@ TEST(SampleFolder, LetsStandWhatOthersPutBesideImagesAndTruth) {
   EXPECT_TRUE(fs::exists(scratch.path() / "run/checkpoint"));
 }
 
-TEST(SampleFolder, RefusesAFolderOfSomebodyElseAndTouchesNothing) {
+TEST(SampleFolder, RejectsAForeignFolderAndDoesNotChangeIt) {
   const test::ScratchFolder scratch;
   scratch.Write("images/holiday.jpg", "x");
   EXPECT_THAT(test::InputErrorOf([&] { WriteSample(scratch.path(), Tiny()); }),
@@ -126,7 +126,7 @@ TEST(SampleFolder, RefusesAFolderOfSomebodyElseAndTouchesNothing) {
   EXPECT_THAT(NamesIn(scratch.path()), ElementsAre("images/holiday.jpg"));
 }
 
-TEST(SampleFolder, RefusesForeignFilesAmongItsPhotographs) {
+TEST(SampleFolder, RejectsForeignFilesAmongItsPhotographs) {
   const test::ScratchFolder scratch;
   WriteSample(scratch.path(), Tiny());
   for (const char* name : {"images/view_abc.png", "images/view_000.jpg", "truth/notes.txt"}) {
@@ -138,7 +138,7 @@ TEST(SampleFolder, RefusesForeignFilesAmongItsPhotographs) {
   }
 }
 
-TEST(SampleFolder, RefusesAFile) {
+TEST(SampleFolder, RejectsAFile) {
   const test::ScratchFolder scratch;
   const fs::path file = scratch.Write("demo", "x");
   EXPECT_THAT(test::InputErrorOf([&] { WriteSample(file, Tiny()); }),
@@ -147,13 +147,13 @@ TEST(SampleFolder, RefusesAFile) {
               HasSubstr((file / "below").string()));
 }
 
-// Rights do not bind the super-user, so a place where nobody can make a folder stands in.
-TEST(SampleFolder, ThatCannotBeMadeIsAnErrorThatNamesIt) {
+// Root ignores permissions, so this uses a file system in which no folder can be created.
+TEST(SampleFolder, ErrorsNameAFolderThatCannotBeCreated) {
   EXPECT_THAT(test::InputErrorOf([] { WriteSample("/proc/no-such-place/demo", Tiny()); }),
               AllOf(HasSubstr("/proc/no-such-place/demo"), HasSubstr("cannot be written")));
 }
 
-TEST(SampleFolder, IsNotMadeForOptionsOutOfRange) {
+TEST(SampleFolder, IsNotCreatedForOptionsOutOfRange) {
   const test::ScratchFolder scratch;
   EXPECT_THAT(test::InputErrorOf([&] { WriteSample(scratch.path() / "demo", Tiny(1)); }),
               HasSubstr("--views"));

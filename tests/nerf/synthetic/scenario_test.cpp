@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "nerf/image/image_io.h"
 #include "nerf/scene/camera.h"
@@ -31,13 +32,21 @@ SampleOptions Tiny(Scenario scenario) {
   return options;
 }
 
-TEST(Scenario, HasANameThatAPersonUses) {
+TEST(Scenario, HasANameAndAcceptsFormerNames) {
   EXPECT_EQ(ScenarioFromName("exposure"), Scenario::kExposure);
+  EXPECT_EQ(ScenarioFromName("anti_aliasing"), Scenario::kAntiAliasing);
+  for (const auto& [former, scenario] : {std::pair("view", Scenario::kViewDependence),
+                                         {"poses", Scenario::kPoseRefinement},
+                                         {"footprint", Scenario::kAntiAliasing},
+                                         {"depth", Scenario::kDepthSupervision}}) {
+    EXPECT_EQ(ScenarioFromName(former), scenario);
+    EXPECT_EQ((", " + ScenarioNames() + ",").find(fmt::format(", {},", former)), std::string::npos);
+  }
   EXPECT_THAT(test::InputErrorOf([] { ScenarioFromName("rain"); }),
               testing::AllOf(testing::HasSubstr("rain"), testing::HasSubstr("exposure")));
 }
 
-TEST(Scenario, OfNothingShowsMattThingsAndSomethingEverywhere) {
+TEST(Scenario, NothingIsDiffuseAndHasNoGaps) {
   const Capture capture = MakeCapture(Tiny(Scenario::kNothing));
   for (const Object& object : SceneFor(Scenario::kNothing).objects) {
     EXPECT_TRUE(object.material.mirror.isZero());
@@ -48,12 +57,12 @@ TEST(Scenario, OfNothingShowsMattThingsAndSomethingEverywhere) {
   }
 }
 
-TEST(Scenario, OfDepthHasFewPhotographs) {
+TEST(Scenario, DepthSupervisionHasFewPhotographs) {
   EXPECT_LT(DefaultViewCount(Scenario::kDepthSupervision),
             DefaultViewCount(Scenario::kNothing) / 3);
 }
 
-TEST(Scenario, OfExposureChangesLightAndNothingElse) {
+TEST(Scenario, ExposureChangesTheBrightnessAlone) {
   const SampleOptions plain = Tiny(Scenario::kNothing), drift = Tiny(Scenario::kExposure);
   const Capture a = MakeCapture(plain), b = MakeCapture(drift);
   for (std::size_t i = 0; i < a.views.size(); ++i) {
@@ -69,7 +78,7 @@ TEST(Scenario, OfExposureChangesLightAndNothingElse) {
   }
 }
 
-TEST(Scenario, OfRobustLeavesEveryEighthPhotographToJudgeBy) {
+TEST(Scenario, RobustHasNoPassersByInHeldOutPhotographs) {
   const Capture plain = MakeCapture(Tiny(Scenario::kNothing));
   const Capture passed = MakeCapture(Tiny(Scenario::kRobust));
   int changed = 0;
@@ -79,14 +88,14 @@ TEST(Scenario, OfRobustLeavesEveryEighthPhotographToJudgeBy) {
       EXPECT_TRUE(same) << i;
     }
     if (!same) ++changed;
-    // What is true of the scene is true without them.
+    // Ground truth does not include passers-by.
     EXPECT_EQ(plain.views[i].depth.pixels, passed.views[i].depth.pixels);
     EXPECT_FALSE(passed.views[i].mask);
   }
   EXPECT_GE(changed, 6);
 }
 
-TEST(Scenario, OfMasksHidesATwelfthOfEachPhotographBehindTwoOrThree) {
+TEST(Scenario, MasksHideATwelfthOfEachPhotograph) {
   SampleOptions options = Tiny(Scenario::kMasks);
   options.views = 36;
   options.width = 160;
@@ -110,7 +119,7 @@ TEST(Scenario, OfMasksHidesATwelfthOfEachPhotographBehindTwoOrThree) {
   EXPECT_LT(hidden / pixels, 0.11);
 }
 
-TEST(Scenario, OfViewIsGlossyAndMirrorsNothing) {
+TEST(Scenario, ViewDependenceIsGlossyWithoutMirrors) {
   int glossy = 0;
   for (const Object& object : SceneFor(Scenario::kViewDependence).objects) {
     EXPECT_TRUE(object.material.mirror.isZero());
@@ -119,7 +128,7 @@ TEST(Scenario, OfViewIsGlossyAndMirrorsNothing) {
   EXPECT_GE(glossy, 5);
 }
 
-TEST(Scenario, OfMasksMarksEveryPixelInWhichSomebodyIs) {
+TEST(Scenario, MasksCoverAllPassersBy) {
   const Capture plain = MakeCapture(Tiny(Scenario::kNothing));
   const Capture masked = MakeCapture(Tiny(Scenario::kMasks));
   int hidden = 0;
@@ -130,7 +139,7 @@ TEST(Scenario, OfMasksMarksEveryPixelInWhichSomebodyIs) {
         ++hidden;
         continue;
       }
-      // Of their shadows nothing is said: what is left may be darker, and is no other colour.
+      // Shadows of passers-by are not masked: other pixels may be darker, but not brighter.
       for (std::size_t c = 0; c < 3; ++c) {
         ASSERT_LE(masked.views[i].photo.pixels[3 * p + c],
                   plain.views[i].photo.pixels[3 * p + c] + 1e-6);
@@ -140,25 +149,25 @@ TEST(Scenario, OfMasksMarksEveryPixelInWhichSomebodyIs) {
   EXPECT_GT(hidden, 100);
 }
 
-TEST(Scenario, OfFootprintIsNearAndFarInTurn) {
+TEST(Scenario, AntiAliasingAlternatesNearAndFar) {
   SampleOptions options = Tiny(Scenario::kAntiAliasing);
   options.views = 36;
   options.samples_per_pixel = 1;
   const Capture capture = MakeCapture(options);
-  int far = 0, far_to_judge_by = 0, to_judge_by = 0;
+  int far = 0, far_held_out = 0, held_out = 0;
   for (int i = 0; i < options.views; ++i) {
     const double distance = capture.posed.images[i].world_from_camera.translation().norm();
     EXPECT_NEAR(distance, distance > 6 ? 12 : 3, 0.06 * distance);
     far += distance > 6;
-    to_judge_by += IsHeldOut(i);
-    far_to_judge_by += IsHeldOut(i) && distance > 6;
+    held_out += IsHeldOut(i);
+    far_held_out += IsHeldOut(i) && distance > 6;
   }
   EXPECT_NEAR(far, options.views / 2, 2);
-  EXPECT_GE(far_to_judge_by, 2);
-  EXPECT_GE(to_judge_by - far_to_judge_by, 2);
+  EXPECT_GE(far_held_out, 2);
+  EXPECT_GE(held_out - far_held_out, 2);
 }
 
-TEST(Scenario, OfAlphaIsTransparentWhereNothingIsMet) {
+TEST(Scenario, AlphaIsTransparentBesideTheSubject) {
   const Capture capture = MakeCapture(Tiny(Scenario::kAlpha));
   const Capture plain = MakeCapture(Tiny(Scenario::kNothing));
   int clear = 0, opaque = 0, missed = 0;
@@ -172,7 +181,7 @@ TEST(Scenario, OfAlphaIsTransparentWhereNothingIsMet) {
         missed += alpha == 1;
       }
       if (alpha < 1) continue;
-      // Where all of a pixel is the subject, it is the picture without alpha.
+      // Opaque pixels are those of the picture without alpha.
       ++opaque;
       for (int c = 0; c < 3; ++c) {
         ASSERT_NEAR(LinearFromSrgb(photo.pixels[4 * p + c]),
@@ -182,16 +191,16 @@ TEST(Scenario, OfAlphaIsTransparentWhereNothingIsMet) {
   }
   EXPECT_GT(clear, 100);
   EXPECT_GT(opaque, 100);
-  EXPECT_LT(missed, clear / 100);  // at edges, where only a pixel's middle meets nothing
+  EXPECT_LT(missed, clear / 100);  // at edges, where only the centre of a pixel hits nothing
 }
 
-TEST(Scenario, OfHdrIsBrighterThanWhite) {
+TEST(Scenario, HdrIsBrighterThanWhite) {
   const Capture capture = MakeCapture(Tiny(Scenario::kHdr));
   EXPECT_EQ(capture.views[0].photo.encoding, ColorEncoding::kLinear);
   EXPECT_GT(*std::ranges::max_element(capture.views[0].photo.pixels), 2);
 }
 
-TEST(SparsePoints, AreSeenWhereTheirTracksSay) {
+TEST(SparsePoints, HaveTracksInsideThePhotographs) {
   const SampleOptions options = Tiny(Scenario::kBuiltIn);
   const Capture capture = MakeCapture(options);
   const auto points = SparsePoints(SceneFor(options.scenario), capture.posed, options);
@@ -205,8 +214,7 @@ TEST(SparsePoints, AreSeenWhereTheirTracksSay) {
   }
 }
 
-// Who stands behind a point does not hide it.
-TEST(SparsePoints, AreSeenWhereverTheyAreNotMaskedOut) {
+TEST(SparsePoints, AreHiddenByPassersByAlone) {
   SampleOptions options = Tiny(Scenario::kMasks);
   options.width = 160;
   options.height = 120;
@@ -224,18 +232,18 @@ TEST(SparsePoints, AreSeenWhereverTheyAreNotMaskedOut) {
       seen_unmasked += *capture.views[seen.image].mask->At(x, y) == 1;
     }
   }
-  std::size_t sightings = 0, unhindered = 0;
+  std::size_t sightings = 0, without_passers_by = 0;
   options.scenario = Scenario::kNothing;
   for (const auto& point : points) sightings += point.track.size();
   for (const auto& point : SparsePoints(SceneFor(options.scenario), posed, options)) {
-    unhindered += point.track.size();
+    without_passers_by += point.track.size();
   }
-  // Nearly all are outside of the masks, which reach a pixel further, and few are lost.
+  // Nearly all are outside the masks, which are a pixel larger, and few are lost.
   EXPECT_GT(seen_unmasked, 0.98 * sightings);
-  EXPECT_GT(sightings, 0.85 * unhindered);
+  EXPECT_GT(sightings, 0.85 * without_passers_by);
 }
 
-TEST(WriteSample, WithMasksWritesThemAndTakesThemAwayAgain) {
+TEST(WriteSample, WritesMasksAndRemovesThoseOfAnEarlierSample) {
   const test::ScratchFolder folder;
   WriteSample(folder.path(), Tiny(Scenario::kMasks));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "masks" / "view_001.png"));
@@ -245,7 +253,7 @@ TEST(WriteSample, WithMasksWritesThemAndTakesThemAwayAgain) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "images" / "view_001.png"));
 }
 
-TEST(WriteSample, WithWrongPosesKeepsTheTrueOnesApart) {
+TEST(WriteSample, WritesPerturbedAndTruePoses) {
   const test::ScratchFolder folder;
   const SampleOptions options = Tiny(Scenario::kPoseRefinement);
   WriteSample(folder.path(), options);

@@ -38,7 +38,7 @@ TEST(GradientNoise, IsContinuousAcrossCells) {
   }
 }
 
-TEST(FractalNoise, HasUnitlikeSpreadWhateverTheOctaves) {
+TEST(FractalNoise, HasSimilarSpreadForAnyNumberOfOctaves) {
   for (const int octaves : {1, 3, 5}) {
     double squares = 0;
     constexpr int kPoints = 4000;
@@ -63,7 +63,7 @@ TEST(Texture, TheBuiltInOnesAreReflectances) {
   }
 }
 
-// A patch of the slab, sampled on a grid, must look unlike the same patch moved elsewhere.
+// A patch of the slab must differ from the same patch shifted.
 TEST(Texture, TheSlabDoesNotRepeat) {
   const Texture slab = BuiltInScene().objects.front().material.albedo;
   const auto difference = [&](const Vector3d& shift) {
@@ -78,7 +78,7 @@ TEST(Texture, TheSlabDoesNotRepeat) {
   for (int x = -4; x <= 4; ++x) {
     for (int y = -4; y <= 4; ++y) {
       if (x == 0 && y == 0) continue;
-      // The cell of the largest chips is 0.42: were there a period, it would be a multiple of it.
+      // A period would be a multiple of the cell size of the largest chips, 0.42.
       EXPECT_GT(difference(Vector3d(0.42 * x, 0.42 * y, 0)), 0.05) << x << " " << y;
     }
   }

@@ -21,11 +21,11 @@ using ::testing::HasSubstr;
 
 using std::numbers::pi;
 
-Surface MattBall(const Color& albedo, const Vector3d& center = Vector3d::Zero()) {
+Surface DiffuseSphere(const Color& albedo, const Vector3d& center = Vector3d::Zero()) {
   return {Sphere{center, 1}, std::make_shared<Lambert>(albedo)};
 }
 
-// Mean of many paths, and the rays of one of them in the mean.
+// The mean radiance of many paths, and their mean number of rays.
 struct Mean {
   Color radiance = Color::Zero();
   double rays = 0;
@@ -46,10 +46,10 @@ Mean MeanRadiance(const SurfaceScene& scene, const TransportTerms& terms, const 
 
 Ray Down(double x, double y) { return {{x, y, 10}, -Vector3d::UnitZ()}; }
 
-TEST(PathTracer, ASphereUnderADirectionalLightIsItsClosedForm) {
+TEST(PathTracer, MatchesTheClosedFormOfASphereUnderADirectionalLight) {
   SurfaceScene scene;
   const Color albedo(0.8, 0.5, 0.25);
-  scene.surfaces = {MattBall(albedo)};
+  scene.surfaces = {DiffuseSphere(albedo)};
   const Vector3d to_light(std::sqrt(0.75), 0, 0.5);
   scene.directional_lights = {{to_light, Color(3, 2, 1)}};
   for (const double x : {-0.9, -0.4, 0.0, 0.3, 0.8}) {
@@ -60,17 +60,16 @@ TEST(PathTracer, ASphereUnderADirectionalLightIsItsClosedForm) {
   }
 }
 
-TEST(PathTracer, APointLightLightsByTheSquareOfItsDistance) {
+TEST(PathTracer, PointLightsFallOffWithTheSquareOfTheDistance) {
   SurfaceScene scene;
-  scene.surfaces = {MattBall(Color::Ones())};
+  scene.surfaces = {DiffuseSphere(Color::Ones())};
   scene.point_lights = {{{0, 0, 3}, Color::Constant(8)}};
   EXPECT_NEAR(MeanRadiance(scene, {}, {{0, 0.001, 10}, -Vector3d::UnitZ()}, 1).radiance.x(),
               8.0 / 4 / pi, 1e-3);
 }
 
-// Whatever a body's shape and coat: where all around is equally bright and nothing is absorbed, it
-// cannot be seen.
-TEST(PathTracer, AWhiteConvexBodyInAFurnaceIsInvisible) {
+// A body that absorbs nothing is invisible under uniform illumination (white furnace test).
+TEST(PathTracer, AWhiteConvexBodyIsInvisibleInAFurnace) {
   SurfaceScene scene;
   scene.environment = std::make_shared<EnvironmentMap>(EnvironmentMap::Uniform(Color::Ones()));
   for (const auto& brdf : std::vector<std::shared_ptr<const Brdf>>{
@@ -84,11 +83,11 @@ TEST(PathTracer, AWhiteConvexBodyInAFurnaceIsInvisible) {
   }
 }
 
-// Two white balls that see each other need all bounces to vanish in a furnace; each bounce brings
-// back part of what is missing.
-TEST(PathTracer, BouncesBringBackWhatHollowsLose) {
+// Two white spheres side by side are invisible in a furnace only with all bounces between them.
+TEST(PathTracer, AllBouncesTogetherMakeConcaveWhiteBodiesInvisibleInAFurnace) {
   SurfaceScene scene;
-  scene.surfaces = {MattBall(Color::Ones(), {-1.0, 0, 0}), MattBall(Color::Ones(), {1.0, 0, 0})};
+  scene.surfaces = {DiffuseSphere(Color::Ones(), {-1.0, 0, 0}),
+                    DiffuseSphere(Color::Ones(), {1.0, 0, 0})};
   scene.environment = std::make_shared<EnvironmentMap>(EnvironmentMap::Uniform(Color::Ones()));
   double before = 0;
   for (const int bounces : {0, 1, 3, 30}) {
@@ -106,11 +105,11 @@ TEST(PathTracer, BouncesBringBackWhatHollowsLose) {
   }
 }
 
-// Inside a closed glowing ball of albedo a every wall shows L_e (1 + a + a^2 + ...).
-TEST(PathTracer, InsideAGlowingBallBouncesAreAGeometricSeries) {
+// Inside a closed glowing sphere of albedo a the radiance is L_e (1 + a + a^2 + ...).
+TEST(PathTracer, BouncesInsideAGlowingSphereAreAGeometricSeries) {
   SurfaceScene scene;
   constexpr double kAlbedo = 0.6;
-  scene.surfaces = {MattBall(Color::Constant(kAlbedo))};
+  scene.surfaces = {DiffuseSphere(Color::Constant(kAlbedo))};
   scene.surfaces[0].emission = Color::Constant(0.5);
   const Ray ray{{0.2, 0.1, 0}, Vector3d(0.6, 0, 0.8)};
   for (const int bounces : {0, 1, 2, 60}) {
@@ -121,11 +120,11 @@ TEST(PathTracer, InsideAGlowingBallBouncesAreAGeometricSeries) {
   }
 }
 
-// All light that falls on a matt ball leaves it, less what it absorbs: the radiosity over its
-// surface sums to albedo times the light through its shadow.
-TEST(PathTracer, ABallReflectsWhatItDoesNotAbsorb) {
+// The radiosity integrated over a diffuse sphere is the albedo times the power through its cross
+// section.
+TEST(PathTracer, ASphereReflectsItsAlbedoTimesTheIncomingPower) {
   SurfaceScene scene;
-  scene.surfaces = {MattBall(Color::Constant(0.7))};
+  scene.surfaces = {DiffuseSphere(Color::Constant(0.7))};
   scene.directional_lights = {{Vector3d::UnitZ(), Color::Constant(2)}};
   double power = 0;
   constexpr int kPoints = 4000;
@@ -137,9 +136,9 @@ TEST(PathTracer, ABallReflectsWhatItDoesNotAbsorb) {
   EXPECT_NEAR(power, 0.7 * 2 * pi, 0.01);
 }
 
-TEST(PathTracer, ShadowsFallBehindBodiesUnlessTheyAreOff) {
+TEST(PathTracer, CastsShadowsUnlessTheyAreDisabled) {
   SurfaceScene scene;
-  scene.surfaces = {MattBall(Color::Ones()), MattBall(Color::Ones(), {0, 0, 3})};
+  scene.surfaces = {DiffuseSphere(Color::Ones()), DiffuseSphere(Color::Ones(), {0, 0, 3})};
   scene.directional_lights = {{Vector3d::UnitZ()}};
   const Ray from_the_side{{5, 0, 0.5}, Vector3d(-1, 0, 0)};
   TransportTerms terms;
@@ -149,9 +148,10 @@ TEST(PathTracer, ShadowsFallBehindBodiesUnlessTheyAreOff) {
   EXPECT_NEAR(MeanRadiance(scene, terms, from_the_side, 1).radiance.x(), 0.5, 1e-9);
 }
 
-TEST(PathTracer, ATermThatIsOffCostsNoRay) {
+TEST(PathTracer, DisabledTermsCostNoRays) {
   SurfaceScene scene;
-  scene.surfaces = {MattBall(Color::Constant(0.5)), MattBall(Color::Constant(0.5), {2.0, 0, 0})};
+  scene.surfaces = {DiffuseSphere(Color::Constant(0.5)),
+                    DiffuseSphere(Color::Constant(0.5), {2.0, 0, 0})};
   scene.directional_lights = {{Vector3d::UnitZ()}, {Vector3d(0.1, 0, 1).normalized()}};
   TransportTerms terms{.emission = true, .direct = false, .shadows = true, .bounces = 9};
   EXPECT_EQ(MeanRadiance(scene, terms, Down(0, 0), 10).rays, 1);
@@ -163,15 +163,15 @@ TEST(PathTracer, ATermThatIsOffCostsNoRay) {
   EXPECT_GT(MeanRadiance(scene, terms, Down(0, 0), 10).rays, 3);
 }
 
-// Both ways to find an environment, and their mixture, mean the same; here against the closed form.
-TEST(PathTracer, AMattBallUnderAnEnvironmentShowsItsIrradiance) {
+// With shadows the environment is sampled by luminance and by BRDF; both against the closed form.
+TEST(PathTracer, ADiffuseSphereShowsTheIrradianceOfTheEnvironment) {
   Image image(64, 32, 3, ColorEncoding::kLinear);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = 0.2f;
   for (int c = 0; c < 3; ++c) image.At(40, 9)[c] = 200;
   auto map = std::make_shared<EnvironmentMap>(image, "sun");
   SurfaceScene scene;
   scene.environment = map;
-  scene.surfaces = {MattBall(Color::Constant(0.5))};
+  scene.surfaces = {DiffuseSphere(Color::Constant(0.5))};
   for (const double x : {-0.5, 0.0, 0.5}) {
     const Vector3d normal(x, 0, std::sqrt(1 - x * x));
     const double expected = 0.5 / pi * map->Irradiance(normal).x();
@@ -191,7 +191,7 @@ TEST(PathTracer, RefusesBouncesOutOfRange) {
   EXPECT_THAT(test::InputErrorOf([&] { PathTracer(scene, terms); }), HasSubstr("--bounces"));
 }
 
-TEST(SubsurfaceSphere, GlowsBeyondTheEdgeOfItsShadow) {
+TEST(SubsurfaceSphere, LightReachesBeyondTheTerminator) {
   SurfaceScene scene;
   const Sphere sphere{{0, 0, 0}, 1};
   Surface ball{sphere, nullptr};
@@ -207,9 +207,10 @@ TEST(SubsurfaceSphere, GlowsBeyondTheEdgeOfItsShadow) {
   EXPECT_GT(night, 0);
 }
 
-TEST(SceneRenderer, TellsItsNoiseAndStopsWhereItIsLowEnough) {
+TEST(SceneRenderer, EstimatesItsNoiseAndStopsAtTheRequestedOne) {
   SurfaceScene scene;
-  scene.surfaces = {MattBall(Color::Constant(0.5)), MattBall(Color::Constant(0.5), {1.5, 0, 0})};
+  scene.surfaces = {DiffuseSphere(Color::Constant(0.5)),
+                    DiffuseSphere(Color::Constant(0.5), {1.5, 0, 0})};
   Image image(64, 32, 3, ColorEncoding::kLinear);
   std::ranges::fill(image.pixels, 1.0f);
   scene.environment = std::make_shared<EnvironmentMap>(image, "white");
@@ -217,14 +218,14 @@ TEST(SceneRenderer, TellsItsNoiseAndStopsWhereItIsLowEnough) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = Vector3d(0, 0, -8);
   RenderSettings settings;
-  settings.places = 1;
-  settings.paths_per_place = 64;
+  settings.positions = 1;
+  settings.paths_per_position = 64;
   const SceneRendering few = RenderScene(scene, {}, camera, pose, settings);
-  settings.paths_per_place = 1024;
+  settings.paths_per_position = 1024;
   settings.seed = 1;
   const SceneRendering many = RenderScene(scene, {}, camera, pose, settings);
   EXPECT_NEAR(few.noise / many.noise, 4, 0.8);
-  // The estimate is what the pictures differ by.
+  // The estimated noise agrees with the difference of the pictures.
   double squares = 0;
   double sum = 0;
   for (std::size_t i = 0; i < few.color.pixels.size(); ++i) {
@@ -237,15 +238,15 @@ TEST(SceneRenderer, TellsItsNoiseAndStopsWhereItIsLowEnough) {
   EXPECT_LT(RenderScene(scene, {}, camera, pose, settings).rays, many.rays / 8);
 }
 
-TEST(SceneRenderer, DoesNotDependOnTheNumberOfThreadsAndCanBeStopped) {
+TEST(SceneRenderer, IsIndependentOfTheNumberOfThreadsAndCanBeStopped) {
   SurfaceScene scene;
-  scene.surfaces = {MattBall(Color::Constant(0.5))};
+  scene.surfaces = {DiffuseSphere(Color::Constant(0.5))};
   scene.environment = std::make_shared<EnvironmentMap>(EnvironmentMap::Uniform(Color::Ones()));
   const Camera camera = PinholeFromFov(8, 6, 0.5);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = Vector3d(0, 0, -5);
   RenderSettings settings;
-  settings.paths_per_place = 4;
+  settings.paths_per_position = 4;
   const int threads = NumThreads();
   SetNumThreads(1);
   const Image one = RenderScene(scene, {}, camera, pose, settings).color;
@@ -254,9 +255,9 @@ TEST(SceneRenderer, DoesNotDependOnTheNumberOfThreadsAndCanBeStopped) {
   SetNumThreads(threads);
   const auto stopped = RenderScene(scene, {}, camera, pose, settings, "", [] { return false; });
   EXPECT_FALSE(stopped.finished);
-  settings.places = 0;
+  settings.positions = 0;
   EXPECT_THAT(test::InputErrorOf([&] { RenderScene(scene, {}, camera, pose, settings); }),
-              HasSubstr("places"));
+              HasSubstr("positions"));
 }
 
 }  // namespace

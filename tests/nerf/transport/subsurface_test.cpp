@@ -11,9 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(SubsurfaceSphere, UnderUniformLightShowsTheTotalReflectance) {
-  // A ball much larger than the light's way in it is nearly flat; what its curvature takes from the
-  // straight distances is the rest.
+TEST(SubsurfaceSphere, HasTheTotalReflectanceUnderUniformLight) {
+  // A sphere much larger than the diffusion length is nearly flat; its curvature explains the rest.
   const SubsurfaceSphere ball({{0, 0, 0}, 15}, Medium{{2, 2, 2}, {0.2, 0.5, 1.0}, 1.3});
   const Color expected = ball.dipole().TotalDiffuseReflectance();
   EXPECT_LT(((ball.UniformReflectance() - expected) / expected).abs().maxCoeff(), 0.08)
@@ -38,7 +37,7 @@ TEST(SubsurfaceSphere, EmitsItsReflectanceTimesTheIncomingEnergy) {
     const auto irradiance = [](const Vector3d& normal) -> Color {
       return Color(3, 2, 1) * std::max(0.0, normal.dot(Vector3d(0.6, 0, 0.8)));
     };
-    const auto exitance = SubsurfaceSphere::Light(
+    const auto exitance = SubsurfaceSphere::Illuminate(
         ball, [&](int, const Vector3d&, const Vector3d& normal) { return irradiance(normal); });
     const Color entering = MeanOverSphere(irradiance);
     const Color leaving = MeanOverSphere(

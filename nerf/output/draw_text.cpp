@@ -1,4 +1,4 @@
-#include "nerf/output/lettering.h"
+#include "nerf/output/draw_text.h"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -8,7 +8,7 @@
 namespace nerf {
 namespace {
 
-// The first font that OpenImageIO can load here; empty: none.
+// The first installed font that OpenImageIO can load; empty: none.
 std::string FindFont() {
   for (const char* name : {"DejaVuSans", "LiberationSans-Regular", "Arial"}) {
     OIIO::ImageBuf trial(OIIO::ImageSpec(8, 8, 3, OIIO::TypeFloat));
@@ -24,11 +24,11 @@ const std::string& Font() {
 
 }  // namespace
 
-bool CanLetter() { return !Font().empty(); }
+bool HasFont() { return !Font().empty(); }
 
-void WriteText(const std::string& text, int x, int baseline, int size, Image& image,
-               TextAlign align) {
-  if (!CanLetter()) return;
+void DrawText(const std::string& text, int x, int baseline, int size, Image& image,
+              TextAlign align) {
+  if (!HasFont()) return;
   using OIIO::ImageBufAlgo::TextAlignX;
   const TextAlignX align_x = align == TextAlign::kLeft     ? TextAlignX::Left
                              : align == TextAlign::kCenter ? TextAlignX::Center
