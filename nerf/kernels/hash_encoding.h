@@ -10,8 +10,8 @@ namespace nerf::kernels {
 // with a Multiresolution Hash Encoding", section 3.
 struct HashGridOptions {
   int levels = 8;
-  int features = 4;           // a level; 1, 2, 4 or 8
-  int log2_table_size = 17;   // most entries a level, as a power of two
+  int features = 4;           // per level; 1, 2, 4 or 8
+  int log2_table_size = 17;   // of the largest number of entries per level
   int base_resolution = 16;   // cells along an axis at the coarsest level
   int max_resolution = 2048;  // and at the finest
 };
@@ -41,18 +41,20 @@ HashGridLayout MakeHashGridLayout(const HashGridOptions& options);
 inline constexpr std::uint32_t kHashPrimeY = 2654435761u;
 inline constexpr std::uint32_t kHashPrimeZ = 805459861u;
 
-// Trilinear interpolation of the entries at the 8 corners of the cell that holds each position.
+// Trilinear interpolation of the entries at the 8 corners of the cell that contains each position.
 //   table      [entries, features]
 //   positions  [N,3] in [0,1]; the far faces belong to the last cell
 //   encoded    [N, levels * features], level after level
-// Samples [first, last) only, so that a caller can deal samples out to threads.
+// Computes samples [first, last) only, so that a caller can distribute samples over threads.
+// Differentiable in the table and the positions, by the two backward passes below.
 template <class Real>
 void HashEncodeForward(const HashGridLayout& layout, std::span<const Real> table,
                        std::span<const Real> positions, std::span<Real> encoded, std::int64_t first,
                        std::int64_t last);
 
-// Adds dL/dtable of all N samples for the levels [first_level, last_level) only: a level's entries
-// belong to one thread, so that the scatter needs no atomics and repeats bit for bit.
+// The backward pass of HashEncodeForward in the table: adds dL/dtable of all N samples for the
+// levels [first_level, last_level) only. One thread owns the entries of a level, so that the scatter
+// needs no atomics and is deterministic.
 //   dL_dencoded  [N, levels * features]
 //   dL_dtable    [entries, features], added to
 template <class Real>
@@ -60,11 +62,11 @@ void HashEncodeBackward(const HashGridLayout& layout, std::span<const Real> posi
                         std::span<const Real> dL_dencoded, std::span<Real> dL_dtable,
                         int first_level, int last_level);
 
-// How the encoding changes with the position: adds dL/dposition of samples [first, last). Across
-// the faces of cells the encoding has a kink; there it is the slope of the cell that holds the
-// position.
-//   dL_dencoded   rows of `row` numbers, row >= layout.OutputSize()
-//   level_weight  [levels] by which what a level gives was multiplied; where 0 it is not read
+// The backward pass of HashEncodeForward in the positions: adds dL/dposition of samples
+// [first, last). The encoding is not differentiable across the faces of cells; on a face the
+// gradient is that of the cell that contains the position.
+//   dL_dencoded   rows of `row` values, row >= layout.OutputSize()
+//   level_weight  [levels] factor of each level's features; a level of weight 0 is not read
 //   dL_dposition  [N,3], added to
 template <class Real>
 void HashEncodePositionBackward(const HashGridLayout& layout, std::span<const Real> table,

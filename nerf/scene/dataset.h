@@ -25,9 +25,9 @@ struct DataOptions {
   void Check() const;
 };
 
-// Marks each image as train, validation or test, in place. Splits that the source brings are kept
-// (measuring.md: "unless the data set brings its own test file"); otherwise images are counted in
-// order of name. Scenes of fewer than 8 images hold out none, of fewer than 16 have no validation.
+// Marks each image as train, validation or test, in place. A split that the source defines is kept;
+// otherwise images are counted in the order of their names. With fewer than 8 images none is held
+// out; with fewer than 16 left for training there is no validation split.
 void AssignSplits(PosedImages& posed, const DataOptions& options);
 
 // What training will hold, known before a photograph is read.
