@@ -27,6 +27,7 @@
 #include "nerf/render/image_renderer.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/dataset.h"
+#include "nerf/scene/photograph.h"
 
 namespace nerf {
 namespace {
@@ -112,7 +113,7 @@ void RunEval(const EvalArguments& arguments) {
       Photograph photograph =
           LoadPhotograph(run.posed, *image, {downscale, MeaningOf(run.model.config.effects.masks)});
       truth = OnWhite(photograph.pixels);
-      whole = std::move(photograph.whole);
+      whole = std::move(photograph.valid_pixels);
     } catch (const InputError& error) {
       spdlog::warn("{}; left out", error.what());
       continue;

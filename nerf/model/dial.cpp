@@ -29,7 +29,7 @@ Dial::Dial(const Model& model, const Camera& camera,
   for (int i = 0; i < count; ++i) {
     // In the middle of equal parts of the picture.
     const int middle = camera.height * (2 * i + 1) / (2 * count);
-    strips_.push_back(RowsOf(camera, std::max(0, middle - rows / 2), rows));
+    strips_.push_back(CropRows(camera, std::max(0, middle - rows / 2), rows));
   }
   strips_in_a_frame_ = static_cast<double>(camera.height) / (count * rows);
   exact_ = Render(1, exact_seconds_);

@@ -13,6 +13,7 @@
 #include "nerf/effects/depth.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/scene/camera.h"
+#include "nerf/scene/data_plan.h"
 #include "sfm/colmap_model.h"
 #include "sfm/colmap_runner.h"
 #include "sfm/colmap_text_writer.h"
@@ -79,10 +80,10 @@ void PrintDataPlan(const PosedImages& posed, const DataOptions& options, int thr
     height = std::max(height, camera.height);
   }
   const std::string share =
-      plan.held == plan.pixels
+      plan.stored_pixels == plan.pixels
           ? ""
           : fmt::format(", of every {:.3g} pixels one at random (data.memory_mb allows no more)",
-                        static_cast<double>(plan.pixels) / static_cast<double>(plan.held));
+                        static_cast<double>(plan.pixels) / static_cast<double>(plan.stored_pixels));
   fmt::print(
       "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels; {} MB of "
       "pixels held{}\n",
@@ -131,11 +132,11 @@ Dataset LoadOrWarn(const PosedImages& posed, const Config& config,
     for (const std::string& reason : data.skipped) spdlog::warn("{}", reason);
     spdlog::warn("{} images could not be read and are left out", data.skipped.size());
   }
-  if (data.made_linear > 0) {
+  if (data.linearized_photographs > 0) {
     spdlog::warn(
         "{} of the photographs are display-referred (JPEG, PNG) among linear ones (EXR, HDR); they "
         "are made linear, and say nothing where they are white",
-        data.made_linear);
+        data.linearized_photographs);
   }
   if (config.effects.depth) AddKeptPoints(posed, normalized_from_world, run, data);
   return data;

@@ -22,6 +22,7 @@
 #include "nerf/pipeline/training_input.h"
 #include "nerf/scene/dataset.h"
 #include "nerf/scene/scene_normalization.h"
+#include "nerf/scene/splits.h"
 #include "nerf/train/trainer.h"
 #include "sfm/pose_input.h"
 #include "sfm/transforms_json.h"

@@ -99,7 +99,7 @@ StepResult Trainer::State::Learn(StepSeconds& seconds) {
     timer.Lap(seconds.pixels);
     const StepResult result = model.engine->AccumulateGradients(batch);
     timer.Lap(of_engine);
-    if (ErrorMap* errors = sampler.Errors()) errors->Learn(batch.cell, result.ray_error);
+    if (ErrorMap* errors = sampler.Errors()) errors->Update(batch.cell, result.ray_error);
     timer.Lap(seconds.pixels);
     optimizer.SetLearningRateFactor(
         LearningRateFactor(model.config.schedule, step, pace.Progress(step)));
