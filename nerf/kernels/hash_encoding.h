@@ -16,8 +16,9 @@ struct HashGridOptions {
   int max_resolution = 2048;  // and at the finest
 };
 
-// One level: a lattice of (resolution + 1)^3 vertices over the unit cube. While they fit, each
-// vertex has its own entry ("dense"); beyond that entries are shared by a spatial hash.
+// One level: a lattice of (resolution + 1)^3 vertices over the unit cube. Where they fit into the
+// table, each vertex has its own entry ("dense"); otherwise vertices share entries by a spatial
+// hash.
 struct HashGridLevel {
   std::uint32_t resolution = 0;
   std::uint32_t size = 0;   // entries
@@ -35,8 +36,9 @@ struct HashGridLayout {
 
 HashGridLayout MakeHashGridLayout(const HashGridOptions& options);
 
-// The factors of the spatial hash: the entry of vertex (x, y, z) is x ^ (y kHashPrimeY) ^
-// (z kHashPrimeZ), the first axis having the factor 1; where it is dense, x + side (y + side z).
+// The factors of the spatial hash. The entry of vertex (x, y, z) is
+//   x ^ (y kHashPrimeY) ^ (z kHashPrimeZ) modulo the size of a hashed level,
+//   x + side (y + side z), side = resolution + 1, of a dense level.
 // Source: Teschner et al. 2003.
 inline constexpr std::uint32_t kHashPrimeY = 2654435761u;
 inline constexpr std::uint32_t kHashPrimeZ = 805459861u;
@@ -53,8 +55,8 @@ void HashEncodeForward(const HashGridLayout& layout, std::span<const Real> table
                        std::int64_t last);
 
 // The backward pass of HashEncodeForward in the table: adds dL/dtable of all N samples for the
-// levels [first_level, last_level) only. One thread owns the entries of a level, so that the scatter
-// needs no atomics and is deterministic.
+// levels [first_level, last_level) only. One thread owns the entries of a level, so that the
+// scatter needs no atomics and is deterministic.
 //   dL_dencoded  [N, levels * features]
 //   dL_dtable    [entries, features], added to
 template <class Real>
