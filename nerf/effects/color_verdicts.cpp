@@ -33,7 +33,7 @@ Verdict JudgeView(const TrackColors& colors, const PhotographFit& fit) {
   std::map<int, Spread> of_point;
   for (std::size_t i = 0; i < colors.seen.size(); ++i) {
     Spread& spread = of_point[colors.seen[i].point];
-    spread.left_over.push_back(std::fabs(Luminance(fit.left_over[i])));
+    spread.left_over.push_back(std::fabs(Luminance(fit.residuals[i])));
     spread.contrast.push_back(static_cast<double>(colors.seen[i].contrast));
   }
   std::size_t judged = 0, changing = 0;
@@ -41,7 +41,7 @@ Verdict JudgeView(const TrackColors& colors, const PhotographFit& fit) {
     if (spread.left_over.size() < kFewestViews) continue;
     ++judged;
     const double change = kDeviationOfMedian * Quantile(spread.left_over, 0.5);
-    if (change > kFlatChange + Quantile(spread.contrast, 0.5)) ++changing;
+    if (change > kTexturelessVariation + Quantile(spread.contrast, 0.5)) ++changing;
   }
   if (judged < kFewestPoints) {
     return Undecided(
@@ -69,7 +69,7 @@ Verdict JudgeExposure(const std::vector<double>& stops, const char* where) {
 
 Verdict JudgePassers(const TrackColors& colors, const PhotographFit& fit) {
   std::vector<double> usual;
-  for (const auto& left : fit.left_over) usual.push_back(std::fabs(Luminance(left)));
+  for (const auto& left : fit.residuals) usual.push_back(std::fabs(Luminance(left)));
   const double noise = kDeviationOfMedian * Quantile(usual, 0.5);
   const double limit = std::max(kSomethingElse, 4 * noise);
   std::size_t other = 0;

@@ -33,9 +33,9 @@ void AddFacts(const PhotographFacts& facts, std::vector<Verdict>& verdicts) {
            alpha ? fmt::format("{:.0f} % of the pixels are transparent", 100 * facts.transparent)
                  : "no pixel is transparent"));
   verdicts.push_back(
-      Fact("hdr", facts.linear, facts.beyond_white,
+      Fact("hdr", facts.linear, facts.above_white,
            facts.linear ? fmt::format("linear radiance, {:.1f} % of the pixels brighter than 1",
-                                      100 * facts.beyond_white)
+                                      100 * facts.above_white)
                         : "display-referred files"));
   // What was cut out is of one colour; what is to be ignored is a picture of something.
   const bool cut_out = facts.masked_spread < kSteps;
@@ -68,7 +68,7 @@ void AddUndecided(const PosedImages& posed, bool alpha, const std::string& why,
 
 Inspection InspectPhotographs(const PosedImages& photographs) {
   CheckMasks(photographs);
-  const PhotographFacts facts = LookAtPhotographs(photographs);
+  const PhotographFacts facts = ExaminePhotographs(photographs);
   constexpr char kWhy[] = "no poses yet to tell from";
   Inspection inspection;
   AddFacts(facts, inspection.verdicts);
@@ -80,16 +80,17 @@ Inspection InspectPhotographs(const PosedImages& photographs) {
 Inspection Inspect(const PosedImages& posed, const std::function<void(int)>& read, bool learned) {
   CheckMasks(posed);
   Inspection inspection;
-  const PhotographFacts facts = LookAtPhotographs(posed);
+  const PhotographFacts facts = ExaminePhotographs(posed);
   AddFacts(facts, inspection.verdicts);
   const bool alpha = facts.transparent > 0;
   const SceneNormalization frame = NormalizeScene(posed);
   inspection.normalized_from_world = frame;
   PointShares shares;
   if (alpha) {
-    const std::optional<Ball> hull = BallAboutHull(posed, frame, read);
+    const std::optional<Ball> hull = BoundingBallOfHull(posed, frame, read);
     inspection.verdicts.push_back(JudgeUnbounded(hull));
-    if (!inspection.verdicts.back().on) inspection.normalized_from_world = FittedTo(*hull, frame);
+    if (!inspection.verdicts.back().on)
+      inspection.normalized_from_world = NormalizedTo(*hull, frame);
   } else if (posed.points.size() < kFewestPoints) {
     inspection.verdicts.push_back(
         Fact("unbounded", true, 0, "photographs without alpha show surroundings"));
@@ -97,7 +98,7 @@ Inspection Inspect(const PosedImages& posed, const std::function<void(int)>& rea
     shares = SharesOfPoints(posed, frame);
     inspection.verdicts.push_back(JudgeUnbounded(shares, learned));
     const bool bounded = !inspection.verdicts.back().on;
-    if (bounded) inspection.normalized_from_world = FittedTo(shares.near, frame);
+    if (bounded) inspection.normalized_from_world = NormalizedTo(shares.near, frame);
   }
   if (posed.points.size() < kFewestPoints || posed.images.size() < kFewestPhotographs) {
     AddUndecided(posed, alpha, "no sparse points to tell from", inspection);

@@ -37,7 +37,7 @@ EffectsChoice::EffectsChoice(const PosedImages& posed, const Config& asked,
   progress.Finish();
   if (!inspection_.warning.empty()) spdlog::warn("{}", inspection_.warning);
   for (const Verdict& verdict : inspection_.verdicts) {
-    if (!IsChosen(verdict) || named_.contains(verdict.effect) || !verdict.IsSure()) continue;
+    if (!IsChosen(verdict) || named_.contains(verdict.effect) || !verdict.IsConclusive()) continue;
     assignments_.push_back(verdict.assignment);
   }
   seconds_ = watch.Seconds();
@@ -76,7 +76,7 @@ void EffectsChoice::HeedAlpha() {
   };
   const auto background = find("background"), unbounded = find("unbounded");
   const auto end = inspection_.verdicts.end();
-  if (background == end || !background->decided || (!background->on && background->IsSure()))
+  if (background == end || !background->decided || (!background->on && background->IsConclusive()))
     return;
   if (background->on && unbounded != end && !unbounded->on) {
     replace(*unbounded, true, "no background is learned that would hold what is far");
@@ -130,7 +130,7 @@ void EffectsChoice::Write(const Config& config, const std::filesystem::path& run
                         {"evidence", v.evidence},
                         {"decided", v.decided},
                         {"on", v.on},
-                        {"sure", v.Sure()},
+                        {"confidence", v.Confidence()},
                         {"asked_for", named_.contains(v.effect)}});
   }
   const nlohmann::json root = {{"verdicts", verdicts}, {"simulated", simulated},

@@ -56,7 +56,7 @@ double EstimateOrZero(const Config& trial, const SceneFacts& scene, const Datase
 }  // namespace
 
 bool IsOpen(const Verdict& verdict, const std::set<std::string>& named) {
-  if (verdict.IsSure() || named.contains(verdict.effect)) return false;
+  if (verdict.IsConclusive() || named.contains(verdict.effect)) return false;
   return verdict.decided || verdict.effect == "exposure";
 }
 
@@ -104,7 +104,7 @@ EffectTrials TryWhatIsOpen(const Config& config, const SceneFacts& scene,
       continue;
     }
     // What is configured stands unless the other is clearly better.
-    verdict = Tried(verdict, with, without, is_on ? -kWorthIt : kWorthIt);
+    verdict = FromTrial(verdict, with, without, is_on ? -kWorthIt : kWorthIt);
     if (verdict.on != is_on) {
       trial = other;
       as_it_is = {{steps, otherwise}};
