@@ -59,7 +59,15 @@ TEST(Downscale, AveragesLightAndNotSrgbValues) {
   EXPECT_NEAR(small.pixels[0], 0.7353569, 1e-5);
 }
 
-TEST(Downscale, ColoursCountByTheirAlpha) {
+TEST(Downscale, KeepsAConstantColour) {
+  for (const ColorEncoding encoding : {ColorEncoding::kSrgb, ColorEncoding::kLinear}) {
+    const Image small = Downscale(Make(2, 2, 3, encoding, std::vector<float>(12, 0.4f)), 2);
+    EXPECT_EQ(small.encoding, encoding);
+    for (const float value : small.pixels) EXPECT_NEAR(value, 0.4f, 1e-6);
+  }
+}
+
+TEST(Downscale, ColoursAreWeightedByTheirAlpha) {
   const Image small = Downscale(
       Make(2, 2, 4, ColorEncoding::kLinear, {1, 0, 0, 1, 0, 1, 0, 0.5f, 0, 0, 9, 0, 0, 0, 9, 0}),
       2);
