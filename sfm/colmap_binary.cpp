@@ -18,14 +18,14 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "COLMAP's files are little-endian");
 
-// Smallest possible records, in bytes.
+// Smallest possible size of each record, in bytes.
 constexpr std::size_t kCameraBytes = 4 + 4 + 8 + 8 + 3 * 8;
 constexpr std::size_t kImageBytes = 4 + 7 * 8 + 4 + 1 + 8;
 constexpr std::size_t kPoint2dBytes = 3 * 8;
 constexpr std::size_t kPointBytes = 8 + 3 * 8 + 3 + 8 + 8;
 constexpr std::size_t kTrackElementBytes = 4 + 4;
 
-// Reads values off a file, and never past its end.
+// Reads values from the bytes of a file; throws at its end.
 class ByteReader {
  public:
   explicit ByteReader(const fs::path& file) : file_(file), bytes_(ReadFileBytes(file)) {}
@@ -33,7 +33,7 @@ class ByteReader {
   template <class T>
   T Read() {
     static_assert(std::is_arithmetic_v<T>);
-    if (Left() < sizeof(T)) ThrowCutShort();
+    if (Left() < sizeof(T)) ThrowTruncated();
     T value;
     std::memcpy(&value, bytes_.data() + at_, sizeof(T));
     at_ += sizeof(T);
@@ -50,23 +50,23 @@ class ByteReader {
     return {xy.x(), xy.y(), Read<double>()};
   }
 
-  // A number of records that are still to come.
+  // Reads a number of records that follow.
   std::size_t ReadCount(std::size_t smallest_record) {
     const auto count = Read<std::uint64_t>();
-    if (count > Left() / smallest_record) ThrowCutShort();
+    if (count > Left() / smallest_record) ThrowTruncated();
     return static_cast<std::size_t>(count);
   }
 
   std::string ReadName() {
     const std::size_t end = bytes_.find('\0', at_);
-    if (end == std::string::npos) ThrowCutShort();
+    if (end == std::string::npos) ThrowTruncated();
     std::string name = bytes_.substr(at_, end - at_);
     at_ = end + 1;
     return name;
   }
 
   void Skip(std::size_t bytes) {
-    if (Left() < bytes) ThrowCutShort();
+    if (Left() < bytes) ThrowTruncated();
     at_ += bytes;
   }
 
@@ -79,8 +79,8 @@ class ByteReader {
  private:
   std::size_t Left() const { return bytes_.size() - at_; }
 
-  [[noreturn]] void ThrowCutShort() const {
-    throw InputError("{}: cut short or damaged at byte {} of {}; copy or export it again",
+  [[noreturn]] void ThrowTruncated() const {
+    throw InputError("{}: truncated or damaged at byte {} of {}; copy or export it again",
                      file_.string(), at_, bytes_.size());
   }
 
@@ -124,7 +124,7 @@ std::vector<ImageRecord> ReadImagesBinary(const fs::path& file) {
   for (ImageRecord& image : images) {
     image.id = reader.Read<std::uint32_t>();
     const double w = reader.Read<double>();
-    // Not inside the comma initializer, which asserts when an exception leaves it.
+    // Not inside the comma initializer, which asserts when an exception is thrown inside it.
     const Eigen::Vector3d xyz = reader.ReadVector3();
     image.rotation << w, xyz;
     image.translation = reader.ReadVector3();
@@ -133,7 +133,7 @@ std::vector<ImageRecord> ReadImagesBinary(const fs::path& file) {
     image.points2d.resize(reader.ReadCount(kPoint2dBytes));
     for (Eigen::Vector2d& pixel : image.points2d) {
       pixel = reader.ReadVector2();
-      reader.Skip(sizeof(std::uint64_t));  // the point's id: points3D says it too
+      reader.Skip(sizeof(std::uint64_t));  // the id of the point, which points3D has too
     }
   }
   reader.ExpectEnd();
@@ -166,7 +166,7 @@ int CountImagesBinary(const fs::path& file) {
   stream.read(reinterpret_cast<char*>(&count), sizeof(count));
   if (error || !stream || count > (size - sizeof(count)) / kImageBytes ||
       count > std::numeric_limits<int>::max()) {
-    throw InputError("{}: cut short or damaged; copy or export it again", file.string());
+    throw InputError("{}: truncated or damaged; copy or export it again", file.string());
   }
   return static_cast<int>(count);
 }

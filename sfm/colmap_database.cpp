@@ -18,41 +18,41 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// COLMAP packs the numbers of two images, the smaller first, into one.
+// COLMAP's pair_id is image_id1 * kMostImages + image_id2, with image_id1 < image_id2.
 constexpr std::int64_t kMostImages = 2147483647;
 
-// Runs work on a database, and tells a person which one where it fails.
+// Calls work(database) and turns errors of SQLite into an InputError that names the file.
 template <class Work>
 auto WithDatabase(const fs::path& path, int flags, Work work) {
   try {
     SQLite::Database database(path.string(), flags);
     return work(database);
   } catch (const SQLite::Exception& error) {
-    // The person's features and matches are worth hours: only what is damaged is to be removed.
+    // Features and matches take hours to compute, so only a damaged database is to be removed.
     switch (error.getErrorCode()) {
       case SQLITE_FULL:
       case SQLITE_IOERR:
       case SQLITE_CANTOPEN:
       case SQLITE_READONLY:
-        throw InputError("{}: {}; make room beside it and run again", path.string(), error.what());
+        throw InputError("{}: {}; free some disk space, check permissions, and run again",
+                         path.string(), error.what());
       case SQLITE_BUSY:
       case SQLITE_LOCKED:
-        throw InputError("{}: {}; end the program that uses it and run again", path.string(),
+        throw InputError("{}: {}; close the program that uses it and run again", path.string(),
                          error.what());
       default:
-        throw InputError("{}: {}; remove it and start again", path.string(), error.what());
+        throw InputError("{}: {}; remove it and run again", path.string(), error.what());
     }
   }
 }
 
-// The square of a keypoint's scale: of x, y, and what follows, either scale and angle or a 2 x 2
-// matrix.
+// The square of a keypoint's scale. Columns are x, y and either scale and angle or a 2 x 2 matrix.
 float SquaredScale(const float* keypoint, int columns) {
   if (columns < 6) return columns >= 4 ? keypoint[2] * keypoint[2] : 1.0f;
   return std::fabs(keypoint[2] * keypoint[5] - keypoint[3] * keypoint[4]);
 }
 
-// Rows `kept` of a blob.
+// The rows `kept` of a blob.
 std::string RowsOf(const SQLite::Column& blob, std::size_t bytes_a_row,
                    const std::vector<std::size_t>& kept) {
   const auto* const bytes = static_cast<const char*>(blob.getBlob());
@@ -65,7 +65,7 @@ std::vector<std::size_t> LargestOf(const SQLite::Column& blob, std::size_t rows,
                                    std::size_t wanted) {
   std::vector<float> numbers(rows * columns);
   if (static_cast<std::size_t>(blob.getBytes()) != numbers.size() * sizeof(float)) {
-    throw SQLite::Exception("keypoints are cut short");
+    throw SQLite::Exception("keypoints are truncated");
   }
   if (rows > 0) std::memcpy(numbers.data(), blob.getBlob(), numbers.size() * sizeof(float));
   std::vector<std::size_t> order(rows);
@@ -110,24 +110,28 @@ void CopyLargestFeatures(const fs::path& database, const fs::path& coarse, int f
       images.push_back(all.getColumn(0).getInt64());
     }
     for (const std::int64_t image : images) {
-      SQLite::Statement points(copy, "SELECT rows, cols, data FROM keypoints WHERE image_id = ?");
-      SQLite::Statement said(copy, "SELECT rows, cols, data FROM descriptors WHERE image_id = ?");
-      points.bind(1, image);
-      said.bind(1, image);
-      if (!points.executeStep() || !said.executeStep()) continue;
-      const std::size_t rows = points.getColumn(0).getUInt();
-      const int columns = points.getColumn(1).getInt(), width = said.getColumn(1).getInt();
-      if (said.getColumn(0).getUInt() != rows || columns < 1 || width < 1 ||
-          static_cast<std::size_t>(said.getColumn(2).getBytes()) != rows * width) {
-        throw SQLite::Exception("keypoints and descriptors do not fit together");
+      SQLite::Statement keypoints(copy,
+                                  "SELECT rows, cols, data FROM keypoints WHERE image_id = ?");
+      SQLite::Statement descriptors(copy,
+                                    "SELECT rows, cols, data FROM descriptors WHERE image_id = ?");
+      keypoints.bind(1, image);
+      descriptors.bind(1, image);
+      if (!keypoints.executeStep() || !descriptors.executeStep()) continue;
+      const std::size_t rows = keypoints.getColumn(0).getUInt();
+      const int columns = keypoints.getColumn(1).getInt(),
+                width = descriptors.getColumn(1).getInt();
+      if (descriptors.getColumn(0).getUInt() != rows || columns < 1 || width < 1 ||
+          static_cast<std::size_t>(descriptors.getColumn(2).getBytes()) != rows * width) {
+        throw SQLite::Exception("keypoints and descriptors differ in number");
       }
-      const auto kept = LargestOf(points.getColumn(2), rows, columns, features);
-      const std::string keypoints = RowsOf(points.getColumn(2), columns * sizeof(float), kept);
-      const std::string descriptors = RowsOf(said.getColumn(2), width, kept);
-      points.reset();
-      said.reset();
-      Replace(copy, "keypoints", image, kept.size(), keypoints);
-      Replace(copy, "descriptors", image, kept.size(), descriptors);
+      const auto kept = LargestOf(keypoints.getColumn(2), rows, columns, features);
+      const std::string kept_keypoints =
+          RowsOf(keypoints.getColumn(2), columns * sizeof(float), kept);
+      const std::string kept_descriptors = RowsOf(descriptors.getColumn(2), width, kept);
+      keypoints.reset();
+      descriptors.reset();
+      Replace(copy, "keypoints", image, kept.size(), kept_keypoints);
+      Replace(copy, "descriptors", image, kept.size(), kept_descriptors);
     }
     transaction.commit();
   });

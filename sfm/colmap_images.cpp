@@ -15,13 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool ColmapReadsIt(const Photo& photo) {
+bool ColmapCanUse(const Photo& photo) {
   const bool format_known =
       photo.format == "jpeg" || photo.format == "png" || photo.format == "bmp";
   return format_known && photo.eight_bit && photo.orientation == 1;
 }
 
-// Scales linear radiance, whatever its unit, to what a photograph shows of it.
+// Scales linear radiance of any unit to the range of a photograph and applies the sRGB transfer.
 void ExposeAndEncode(OIIO::ImageBuf& linear) {
   const OIIO::ImageSpec& spec = linear.spec();
   std::vector<float> values(static_cast<std::size_t>(spec.width) * spec.height * spec.nchannels);
@@ -38,7 +38,8 @@ void ExposeAndEncode(OIIO::ImageBuf& linear) {
   linear.set_pixels(linear.roi(), OIIO::TypeFloat, values.data());
 }
 
-// Turned as EXIF says. Not ImageBufAlgo::reorient, which in OpenImageIO 2.4 takes 5 for 7.
+// Rotates by the EXIF orientation. Not ImageBufAlgo::reorient, which in OpenImageIO 2.4 handles
+// orientation 5 as 7.
 OIIO::ImageBuf Upright(const OIIO::ImageBuf& stored, int orientation) {
   namespace algo = OIIO::ImageBufAlgo;
   switch (orientation) {
@@ -61,7 +62,7 @@ OIIO::ImageBuf Upright(const OIIO::ImageBuf& stored, int orientation) {
   }
 }
 
-void WriteStandIn(const Photo& photo, const fs::path& target) {
+void WriteConverted(const Photo& photo, const fs::path& target) {
   OIIO::ImageBuf source(photo.path.string());
   if (!source.read(0, 0, true, OIIO::TypeFloat)) {
     throw InputError("{}: {}", photo.path.string(), source.geterror());
@@ -104,10 +105,10 @@ std::vector<ColmapImage> PlanColmapImages(const std::vector<Photo>& photos) {
   std::vector<ColmapImage> plan;
   for (int i = 0; i < static_cast<int>(photos.size()); ++i) {
     const Photo& photo = photos[i];
-    ColmapImage image{i, photo.name, !ColmapReadsIt(photo)};
-    // JPEG and PNG keep their name and kind; whatever else becomes a PNG.
+    ColmapImage image{i, photo.name, !ColmapCanUse(photo)};
+    // Copies of JPEG and PNG keep their name and format; those of other formats become PNG.
     const bool keeps_name = photo.eight_bit && (photo.format == "jpeg" || photo.format == "png");
-    if (image.stand_in && !keeps_name) {
+    if (image.converted && !keeps_name) {
       do image.name += ".png";
       while (!taken.insert(image.name).second);
     }
@@ -124,13 +125,13 @@ void WriteColmapImages(const std::vector<Photo>& photos, const std::vector<Colma
   for (const ColmapImage& image : plan) {
     if (!error) fs::create_directories((image_folder / image.name).parent_path(), error);
   }
-  if (error) throw InputError("{}: cannot be made: {}", image_folder.string(), error.message());
+  if (error) throw InputError("{}: cannot be created: {}", image_folder.string(), error.message());
   ParallelForEach(
       std::ssize(plan),
       [&](std::int64_t i) {
         const Photo& photo = photos[plan[i].photo];
         const fs::path target = image_folder / plan[i].name;
-        plan[i].stand_in ? WriteStandIn(photo, target) : LinkOrCopy(photo, target);
+        plan[i].converted ? WriteConverted(photo, target) : LinkOrCopy(photo, target);
       },
       threads);
 }

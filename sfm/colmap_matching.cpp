@@ -1,4 +1,4 @@
-// The steps of ColmapSteps that compare photographs with one another.
+// The matching steps of ColmapSteps.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 constexpr int kSequenceOverlap = 20;  // neighbours
 
-// Of the guided match: features a photograph to compare all with all, pairs a photograph to compare
-// in full, and neighbours by name that are compared anyway.
+// Guided matching: features per photograph of the coarse exhaustive match, pairs per photograph
+// that are matched with all features, and neighbours by name that are always matched.
 constexpr int kCoarseFeatures = 512;
 constexpr int kPairsEach = 12;
 constexpr int kNeighbours = 2;
@@ -26,10 +26,10 @@ const char* const kPairs = "pairs.txt";
 
 void ColmapSteps::Match(const std::string& matcher) {
   Step("matches", {matcher}, Database(), [&](StepLedger::State state) {
-    // What an interrupted guided match left.
+    // Left by an interrupted guided match.
     RemoveDatabase(workspace_ / kCoarse);
     RemoveAll(workspace_ / kPairs);
-    // Pairs that are matched already are skipped by COLMAP itself.
+    // COLMAP itself skips pairs that are already matched.
     if (state == StepLedger::State::kChanged) {
       RunOrThrow("clean", "database_cleaner",
                  {"--database_path", Database().string(), "--type", "matches"});
@@ -42,7 +42,7 @@ void ColmapSteps::Match(const std::string& matcher) {
 
 void ColmapSteps::MatchExhaustively(const std::string& step) {
   Arguments arguments = MatchingArguments("exhaustive_matcher", Database());
-  // COLMAP reports block by block: about 64 signs of progress, whatever the number.
+  // COLMAP reports progress per block: about 64 times, whatever the number of photographs.
   AddKnown("exhaustive_matcher", {"ExhaustiveMatching.block_size"}, std::clamp(photos_ / 8, 8, 50),
            arguments);
   RunOrThrow(step, "exhaustive_matcher", arguments);
@@ -63,7 +63,7 @@ void ColmapSteps::MatchGuided() {
   const auto names = ReadImageNames(Database());
   const auto pairs = SelectPairs(ReadMatchedPairs(coarse), names, kPairsEach, kNeighbours);
   RemoveDatabase(coarse);
-  // COLMAP is silent until it has matched all pairs of a list: short lists, to see it move.
+  // COLMAP reports nothing before it has matched all pairs of a list, so lists are short.
   const fs::path list = workspace_ / kPairs;
   const std::size_t part = std::max<std::size_t>(32, pairs.size() / 20);
   ProgressLine progress("matches", static_cast<std::int64_t>(pairs.size()));

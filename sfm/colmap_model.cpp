@@ -33,7 +33,7 @@ std::optional<ModelFile> FindFile(const fs::path& folder, const std::string& ste
 
 ModelFile RequireFile(const fs::path& folder, const std::string& stem) {
   if (auto file = FindFile(folder, stem)) return *file;
-  throw InputError("{}: not a COLMAP model: neither {}.bin nor {}.txt is there", folder.string(),
+  throw InputError("{}: not a COLMAP model: there is neither {}.bin nor {}.txt", folder.string(),
                    stem, stem);
 }
 
@@ -57,7 +57,7 @@ Eigen::Isometry3d WorldFromCamera(const colmap::ImageRecord& image, const std::s
   return camera_from_world.inverse();
 }
 
-// Puts the records of a model together.
+// Builds PosedImages from the records of a model.
 class Assembler {
  public:
   Assembler(const fs::path& model_folder, const fs::path& image_folder)
@@ -69,7 +69,7 @@ class Assembler {
   }
 
   PosedImages Run() {
-    ReadFiles();  // all of them before the first image is opened: damage is found at once
+    ReadFiles();  // before the first image is opened, so that damage is reported at once
     AddImages();
     AddPoints();
     return std::move(result_);
@@ -105,7 +105,7 @@ class Assembler {
     if (result_.images.empty()) {
       throw InputError(
           "{}: none of its {} images is in {} (the first: '{}'); give the folder of photographs "
-          "that COLMAP saw",
+          "that COLMAP used",
           images_file_.path.string(), records_.size(), image_folder_.string(), records_[0].name);
     }
   }
@@ -137,7 +137,7 @@ class Assembler {
     if (!upright) {
       throw InputError(
           "{}: the file is {}x{} pixels, but its camera {} is {}x{}; give the folder with the "
-          "photographs at the size that COLMAP saw",
+          "photographs in the size that COLMAP used",
           where, stored->width, stored->height, record.camera_id, camera->second.width,
           camera->second.height);
     }
@@ -174,9 +174,9 @@ class Assembler {
                    std::vector<TrackElement>* track) {
     const auto record = record_of_id_.find(image_id);
     if (record == record_of_id_.end() || point2d >= records_[record->second].points2d.size()) {
-      throw InputError("{}: point {} was seen as number {} of image {}, which {} does not have",
-                       points_file_->path.string(), point_id, point2d, image_id,
-                       images_file_.path.string());
+      throw InputError(
+          "{}: the track of point {} names 2D point {} of image {}, which is not in {}",
+          points_file_->path.string(), point_id, point2d, image_id, images_file_.path.string());
     }
     const auto image = index_of_record_[record->second];
     if (!image) return;
@@ -256,7 +256,7 @@ fs::path LargestModel(const fs::path& sparse_folder) {
     }
   }
   if (most < 0) {
-    throw InputError("{}: holds no COLMAP model in a folder 0, 1, ...; run COLMAP again",
+    throw InputError("{}: contains no COLMAP model in a folder 0, 1, ...; run COLMAP again",
                      sparse_folder.string());
   }
   return largest;

@@ -8,13 +8,14 @@ namespace nerf::sfm {
 void ColmapOptions::Check() const {
   if (matcher != "auto" && matcher != "exhaustive" && matcher != "sequential" &&
       matcher != "guided") {
-    throw InputError("matcher: '{}' is unknown; it is auto, exhaustive, sequential or guided",
+    throw InputError("matcher: '{}' is unknown; use auto, exhaustive, sequential or guided",
                      matcher);
   }
   if (!CameraModelFromName(camera_model)) {
     throw InputError(
-        "camera model: '{}' is unknown; OPENCV suits most lenses, OPENCV_FISHEYE wide "
-        "ones, and COLMAP's other names are known too",
+        "camera model: '{}' is unknown; use OPENCV for most lenses, OPENCV_FISHEYE for wide ones, "
+        "or "
+        "another of COLMAP's models",
         camera_model);
   }
   if (max_image_size < 200) {

@@ -36,23 +36,23 @@ bp::child Start(const std::filesystem::path& executable, std::vector<std::string
   }
 }
 
-// Remembers the line that explains a failure: the last that calls itself an error, else the last
-// that says anything; a stack trace explains nothing.
-class LastWords {
+// Keeps the line of the output that explains a failure: the last error message, or else the last
+// line that is neither empty nor part of a stack trace.
+class FailureLine {
  public:
-  void Hear(const std::string& line) {
+  void Add(const std::string& line) {
     constexpr std::size_t kLongest = 300;
     const std::size_t begin = line.find_first_not_of(" \t\r=-*");
     if (begin == std::string::npos || line[begin] == '@' || line.find("stack trace") != line.npos) {
       return;
     }
-    const std::string words = line.substr(begin, kLongest);
-    last_ = words;
+    const std::string text = line.substr(begin, kLongest);
+    last_ = text;
     static const std::regex error("error|check failed|what\\(\\):|not enough|no good",
                                   std::regex::icase);
-    if (std::regex_search(words, error)) last_error_ = words;
+    if (std::regex_search(text, error)) last_error_ = text;
   }
-  std::string Line() const { return last_error_.empty() ? last_ : last_error_; }
+  std::string Get() const { return last_error_.empty() ? last_ : last_error_; }
 
  private:
   std::string last_;
@@ -65,7 +65,7 @@ ColmapProgram ColmapProgram::Find() {
   const boost::filesystem::path found = bp::search_path("colmap");
   if (found.empty()) {
     throw InputError(
-        "COLMAP is not installed: apt install colmap (Debian, Ubuntu; elsewhere see "
+        "COLMAP is not installed; run apt install colmap (Debian, Ubuntu; for other systems see "
         "colmap.github.io/install.html), or give poses: a transforms.json or a COLMAP project");
   }
   return ColmapProgram(found.string());
@@ -107,16 +107,16 @@ ColmapProgram::Outcome ColmapProgram::Run(
   all.insert(all.end(), arguments.begin(), arguments.end());
   bp::ipstream output;
   bp::child child = Start(executable_, std::move(all), output);
-  LastWords words;
+  FailureLine failure;
   try {
     for (std::string line; std::getline(output, line);) {
       log << line << std::endl;
       check_log();
-      words.Hear(line);
+      failure.Add(line);
       on_line(line);
     }
   } catch (...) {
-    // Not child.terminate(), which leaves a zombie behind.
+    // Not child.terminate(), which leaves a zombie process.
     kill(child.id(), SIGKILL);
     std::error_code ignored;
     child.wait(ignored);
@@ -125,24 +125,22 @@ ColmapProgram::Outcome ColmapProgram::Run(
   child.wait();
   const int status = child.native_exit_code();
   if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGINT || WTERMSIG(status) == SIGTERM)) {
-    throw InputError("colmap {} was interrupted; run the same command again to go on from there",
-                     command);
+    throw InputError("colmap {} was interrupted; run the same command again to continue", command);
   }
   if (WIFSIGNALED(status)) {
     throw InputError(
-        "colmap {} was ended by signal {}{}; its last words: {}; log: {}", command,
+        "colmap {} was killed by signal {}{}; its last output: {}; log: {}", command,
         WTERMSIG(status),
         WTERMSIG(status) == SIGKILL ? " (out of memory? try --max-image-size 1000)" : "",
-        words.Line(), log_file.string());
+        failure.Get(), log_file.string());
   }
-  return {child.exit_code(), words.Line()};
+  return {child.exit_code(), failure.Get()};
 }
 
 void ThrowStepFailed(const std::string& command, const ColmapProgram::Outcome& outcome,
                      const std::filesystem::path& log_file) {
   throw InputError("colmap {} failed (exit status {}): {}; see {}", command, outcome.exit_code,
-                   outcome.last_line.empty() ? "it said nothing" : outcome.last_line,
-                   log_file.string());
+                   outcome.last_line.empty() ? "no output" : outcome.last_line, log_file.string());
 }
 
 StepProgress ParseProgress(std::string_view line) {

@@ -11,7 +11,7 @@
 
 #include "nerf/scene/posed_images.h"
 
-// What the files of a COLMAP model say, record by record, before anything is put together.
+// The records of the files of a COLMAP model.
 // Format: COLMAP documentation "Output Format"; src/base/reconstruction.cc of COLMAP 3.8.
 namespace nerf::sfm::colmap {
 
@@ -34,9 +34,9 @@ struct PointRecord {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> track;  // image id, index into points2d
 };
 
-// Each reads one file. Every count is held against the bytes that are left before memory is asked
-// for. Throws InputError naming the file (and the line, of a text) when it is cut short, longer
-// than its own counts say, names an unknown camera model, or lists an id twice.
+// Each reads one file. Counts are checked against the remaining bytes before memory is allocated.
+// Throws InputError naming the file (and the line of a text file) when it is truncated, longer than
+// its counts claim, has an unknown camera model, or lists an id twice.
 CameraMap ReadCamerasBinary(const std::filesystem::path& file);
 CameraMap ReadCamerasText(const std::filesystem::path& file);
 std::vector<ImageRecord> ReadImagesBinary(const std::filesystem::path& file);

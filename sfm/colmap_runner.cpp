@@ -16,15 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSequenceMin = 100;    // "auto": more than this, numbered, are matched in sequence
-constexpr int kExhaustiveMost = 20;  // and no more than this all with all
+// Matcher "auto": more photographs than kSequenceMin, if numbered, are matched in sequence; at most
+// kExhaustiveMost are matched exhaustively.
+constexpr std::size_t kSequenceMin = 100, kExhaustiveMost = 20;
 constexpr int kFewestRegistered = 4;
 constexpr double kFewestFraction = 0.1;
 constexpr double kWarnFraction = 0.9;
 
 const char* const kAdvice =
-    "take more photographs that overlap (each part of the scene in five or more), sharp, of things "
-    "with texture, with one lens and exposure";
+    "take more photographs that overlap (each part of the scene in at least five) and are sharp, "
+    "of "
+    "textured surfaces, with one lens and exposure";
 
 std::string Listed(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 8;
@@ -34,6 +36,74 @@ std::string Listed(const std::vector<std::string>& names) {
   }
   if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
   return text;
+}
+
+// COLMAP's lists of pairs separate names by spaces and take '#' for a comment.
+bool FitsIntoPairList(const ColmapImage& image) {
+  return !image.name.starts_with('#') &&
+         std::ranges::none_of(image.name, [](unsigned char c) { return std::isspace(c) != 0; });
+}
+
+std::string ChooseMatcher(const std::string& wanted, const std::vector<Photo>& photos,
+                          const std::vector<ColmapImage>& plan) {
+  std::string matcher = wanted;
+  if (matcher == "auto") {
+    std::vector<std::string> names;
+    for (const Photo& photo : photos) names.push_back(photo.name);
+    const bool one_size = plan.front().name.find('/') == std::string::npos;
+    const bool sequence = one_size && photos.size() > kSequenceMin && IsNumberedSequence(names);
+    matcher = sequence ? "sequential" : photos.size() <= kExhaustiveMost ? "exhaustive" : "guided";
+  }
+  if (matcher != "guided") return matcher;
+  const auto found = std::ranges::find_if_not(plan, FitsIntoPairList);
+  if (found == plan.end()) return matcher;
+  spdlog::warn(
+      "{}: guided matching does not support names that contain spaces or begin with '#'; all pairs "
+      "are matched, which takes longer",
+      found->name);
+  return "exhaustive";
+}
+
+// Runs all steps, and repeats the last ones with more effort where too few photographs are
+// registered.
+void RunSteps(ColmapSteps& steps, const std::string& matcher, int photos) {
+  steps.ExtractFeatures();
+  steps.Match(matcher);
+  steps.Map();
+  if (matcher == "guided" && steps.Registered() < kWarnFraction * photos) {
+    spdlog::info("{} of {} registered; matching the remaining pairs", steps.Registered(), photos);
+    steps.MatchAllAndMap();
+  }
+  if (2 * steps.Registered() < photos) {
+    spdlog::info("{} of {} registered; mapping again with lower thresholds", steps.Registered(),
+                 photos);
+    steps.MapRelaxed();
+  }
+}
+
+// Replaces COLMAP's images in `posed` by the original photographs.
+//   returns  the names of the photographs that are not registered, sorted
+std::vector<std::string> RestorePhotographs(const std::vector<Photo>& photos,
+                                            const std::vector<ColmapImage>& plan,
+                                            const fs::path& workspace, PosedImages& posed) {
+  std::map<std::string, const Photo*> photo_of;
+  for (const ColmapImage& image : plan) photo_of[image.name] = &photos[image.photo];
+  for (PosedImage& image : posed.images) {
+    const auto found = photo_of.find(image.name);
+    if (found == photo_of.end()) {
+      throw InputError("{}: contains {}, which is none of the photographs; remove {} and run again",
+                       posed.source.string(), image.name, workspace.string());
+    }
+    const Photo& photo = *found->second;
+    image.name = photo.name;
+    image.path = photo.path;
+    image.upright_by_exif = photo.orientation != 1;
+    photo_of.erase(found);
+  }
+  std::vector<std::string> unregistered;
+  for (const auto& [name, photo] : photo_of) unregistered.push_back(photo->name);
+  std::ranges::sort(unregistered);
+  return unregistered;
 }
 
 }  // namespace
@@ -63,85 +133,37 @@ PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& worksp
   ColmapReport ignored;
   ColmapReport& r = report != nullptr ? *report : ignored;
 
-  PhotoFolder folder = CheckPhotos(files, options.threads);
+  const PhotoFolder folder = CheckPhotos(files, options.threads);
   r.photos = static_cast<int>(folder.photos.size());
   r.skipped = folder.skipped;
   for (const SkippedPhoto& skipped : r.skipped) {
     spdlog::warn("{}: skipped: {}", skipped.name, skipped.reason);
   }
   const std::vector<ColmapImage> plan = PlanColmapImages(folder.photos);
-  std::vector<std::string> names;
-  for (const Photo& photo : folder.photos) names.push_back(photo.name);
-  const bool one_size = plan.front().name.find('/') == std::string::npos;
-  std::string matcher = options.matcher;
-  if (matcher == "auto") {
-    const bool sequence = one_size && r.photos > kSequenceMin && IsNumberedSequence(names);
-    matcher = sequence ? "sequential" : r.photos <= kExhaustiveMost ? "exhaustive" : "guided";
-  }
-  // COLMAP's lists of pairs know no names with spaces, and take a '#' for a comment.
-  const auto unlistable = [](const ColmapImage& image) {
-    return image.name.starts_with('#') ||
-           std::ranges::any_of(image.name, [](unsigned char c) { return std::isspace(c) != 0; });
-  };
-  if (const auto found = std::ranges::find_if(plan, unlistable);
-      matcher == "guided" && found != plan.end()) {
-    spdlog::warn(
-        "{}: guided matching knows no names with spaces or '#' in front; all pairs are "
-        "compared, which takes longer",
-        found->name);
-    matcher = "exhaustive";
-  }
-
+  const std::string matcher = ChooseMatcher(options.matcher, folder.photos, plan);
   ColmapSteps steps(workspace, options, r.photos);
   steps.PrepareImages(files, folder.photos, plan);
-  steps.ExtractFeatures();
-  steps.Match(matcher);
-  steps.Map();
-  if (matcher == "guided" && steps.Registered() < kWarnFraction * r.photos) {
-    spdlog::info("{} of {} registered; the pairs that were left out are compared, too",
-                 steps.Registered(), r.photos);
-    steps.MatchAllAndMap();
-  }
-  if (2 * steps.Registered() < r.photos) {
-    spdlog::info("{} of {} registered; the mapper tries again with lower thresholds",
-                 steps.Registered(), r.photos);
-    steps.MapRelaxed();
-  }
+  RunSteps(steps, matcher, r.photos);
   r.seconds = steps.Seconds();
   r.registered = steps.Registered();
   if (r.registered < kFewestRegistered || r.registered < kFewestFraction * r.photos) {
-    throw InputError("{}: COLMAP registered {} of {} photographs, too few to go on: {}{}; see {}",
+    throw InputError("{}: COLMAP registered only {} of {} photographs; {}{}; see {}",
                      photo_folder.string(), r.registered, r.photos, kAdvice,
                      matcher == "sequential" ? "; or try --matcher exhaustive" : "",
                      steps.LogFile("mapper").parent_path().string());
   }
 
-  PosedImages result = steps.ReadModel();
-  std::map<std::string, const Photo*> photo_of;
-  for (const ColmapImage& image : plan) photo_of[image.name] = &folder.photos[image.photo];
-  for (PosedImage& image : result.images) {
-    const auto found = photo_of.find(image.name);
-    if (found == photo_of.end()) {
-      throw InputError("{}: names {}, which is none of the photographs; remove {} and start again",
-                       result.source.string(), image.name, workspace.string());
-    }
-    const Photo& photo = *found->second;
-    image.name = photo.name;
-    image.path = photo.path;
-    image.upright_by_exif = photo.orientation != 1;
-    photo_of.erase(found);
-  }
-  for (const auto& [name, photo] : photo_of) r.unregistered.push_back(photo->name);
-  std::sort(r.unregistered.begin(), r.unregistered.end());
-  r.points = static_cast<int>(result.points.size());
-  for (const SparsePoint& point : result.points) {
+  PosedImages posed = steps.ReadModel();
+  r.unregistered = RestorePhotographs(folder.photos, plan, workspace, posed);
+  r.points = static_cast<int>(posed.points.size());
+  for (const SparsePoint& point : posed.points) {
     r.mean_reprojection_error += point.reprojection_error / static_cast<double>(r.points);
   }
   if (r.registered < kWarnFraction * r.photos) {
-    spdlog::warn("COLMAP registered {} of {} photographs, not {}: {}", r.registered, r.photos,
+    spdlog::warn("COLMAP registered {} of {} photographs, not {}; {}", r.registered, r.photos,
                  Listed(r.unregistered), kAdvice);
   }
-  return result;
+  return posed;
 }
 
 }  // namespace nerf::sfm

@@ -18,23 +18,24 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// For photographs in which the mapper finds no start with its defaults (100, 16, 30, 15).
+// For captures in which the mapper finds no initial pair with its defaults (100, 16, 30, 15).
 const std::vector<std::string> kRelaxedMapping = {
     "--Mapper.init_min_num_inliers",     "50", "--Mapper.init_min_tri_angle", "8",
     "--Mapper.abs_pose_min_num_inliers", "15", "--Mapper.min_num_matches",    "10"};
 
-// What follows clears old results away, so nothing here may be anyone else's.
+// The steps remove old results, so the workspace must not contain other files.
 fs::path OpenWorkspace(fs::path workspace) {
   workspace = fs::absolute(workspace).lexically_normal();
   MakeOutputFolder(workspace);
   if (!fs::exists(workspace / "steps.json") && !fs::is_empty(workspace)) {
-    throw InputError("{}: holds files that are not of an earlier run; give another output folder",
-                     workspace.string());
+    throw InputError(
+        "{}: contains files that are not from an earlier run; give another output folder",
+        workspace.string());
   }
   return workspace;
 }
 
-// Where the mapper puts its models: PARENT/0, PARENT/1, ...
+// The models that the mapper wrote: PARENT/0, PARENT/1, ...
 std::vector<fs::path> ModelsIn(const fs::path& parent) {
   std::vector<fs::path> models;
   std::error_code error;
@@ -75,8 +76,8 @@ void ColmapSteps::PrepareImages(const std::vector<fs::path>& files,
   });
 }
 
-// -1: features are looked for in a photograph enlarged by two as well, for four times the time.
-// Small photographs have too few without.
+// -1: features are also extracted from the photograph enlarged by two, which takes four times as
+// long. Small photographs have too few features otherwise.
 int ColmapSteps::FirstOctave() const {
   constexpr int kSmall = 1200;
   return std::min(longest_side_, options_.max_image_size) < kSmall ? -1 : 0;
@@ -85,8 +86,8 @@ int ColmapSteps::FirstOctave() const {
 void ColmapSteps::ExtractFeatures() {
   const json inputs = {options_.camera_model, options_.max_image_size, options_.max_num_features};
   Step("features", inputs, Database(), [&](StepLedger::State) {
-    // Always from the start: COLMAP would give the photographs that an interrupted run left over
-    // a camera of their own.
+    // Always from the beginning: COLMAP would create another camera for the photographs that an
+    // interrupted run had not processed.
     RemoveDatabase(Database());
     Arguments arguments = {"--database_path",
                            Database().string(),
@@ -147,13 +148,14 @@ PosedImages ColmapSteps::ReadModel() const {
 fs::path ColmapSteps::LogFile(const std::string& step) const {
   return workspace_ / "log" / (step + ".log");
 }
+
 void ColmapSteps::Step(const std::string& name, const json& inputs, const fs::path& result,
                        const std::function<void(StepLedger::State)>& work) {
   const StepLedger::State state = ledger_.StateOf(name, inputs);
   if (state == StepLedger::State::kDone && fs::exists(result)) {
-    spdlog::info("{}: done before, skipped", name);
+    spdlog::info("{}: done already, skipped", name);
   } else {
-    spdlog::info("{}: of {} photographs ...", name, photos_);
+    spdlog::info("{}: {} photographs ...", name, photos_);
     ledger_.Begin(name, inputs);
     const auto begin = std::chrono::steady_clock::now();
     work(state);
@@ -181,8 +183,8 @@ ColmapProgram::Outcome ColmapSteps::Run(const std::string& step, const std::stri
   MakeOutputFolder(LogFile(step).parent_path());
   ProgressLine line(step, photos_);
   int total = photos_;
-  return colmap_.Run(command, arguments, LogFile(step), [&](std::string_view said) {
-    const StepProgress progress = ParseProgress(said);
+  return colmap_.Run(command, arguments, LogFile(step), [&](std::string_view output) {
+    const StepProgress progress = ParseProgress(output);
     if (progress.done == 0) return;
     if (progress.total > 0) total = progress.total;
     line.Update(static_cast<std::int64_t>(progress.done) * photos_ / total);
@@ -195,7 +197,7 @@ void ColmapSteps::RunOrThrow(const std::string& step, const std::string& command
   if (outcome.exit_code != 0) ThrowStepFailed(command, outcome, LogFile(step));
 }
 
-// No model is no failure here: what to do then is decided by the number registered.
+// Finding no model is not an error here: the number of registered photographs decides what follows.
 void ColmapSteps::RunMapper(const std::string& step, const fs::path& target,
                             const Arguments& thresholds) {
   MakeOutputFolder(target);

@@ -17,38 +17,41 @@
 
 namespace nerf::sfm {
 
-// The steps from photographs to models, each in a method, to be called in this order. A step that
-// the workspace has finished already, from the same inputs, is skipped, and the log says so.
-// Every method throws InputError when COLMAP is missing or fails, naming step, reason and log file.
+// The steps from photographs to models, one method each, to be called in this order. A step that
+// was finished in the workspace from the same inputs is skipped, with a log message. Every method
+// throws InputError when COLMAP is missing or fails, naming step, reason and log file.
 class ColmapSteps {
  public:
-  // Makes the workspace, or takes up the one of an earlier call. photos: how many there are, for
-  // the progress shown. Throws InputError where the folder holds anything else.
+  // Creates the workspace, or continues that of an earlier call. Throws InputError where the folder
+  // contains other files.
+  //   photos  their number, for showing progress
   ColmapSteps(std::filesystem::path workspace, const ColmapOptions& options, int photos);
 
-  // images/: what COLMAP sees. files: all that was looked at, readable or not; when one of them
-  // changes, everything is done again.
+  // Creates images/, the input of COLMAP.
+  //   files  all files, readable or not; when one changes, all steps are repeated
   void PrepareImages(const std::vector<std::filesystem::path>& files,
                      const std::vector<Photo>& photos, const std::vector<ColmapImage>& plan);
-  // database.db: cameras (one a folder of images/) and SIFT features.
+  // Writes cameras (one per folder of images/) and SIFT features to database.db.
   void ExtractFeatures();
-  // database.db: verified matches. An interrupted match goes on with the pairs that are left.
+  // Writes verified matches to database.db. An interrupted match continues with the remaining
+  // pairs.
   //   matcher  "exhaustive", "sequential" or "guided"
   void Match(const std::string& matcher);
-  // sparse/0, sparse/1, ...: a model for each part that could not be joined to the others.
+  // Writes the models to sparse/0, sparse/1, ..., one for each part of the scene that could not be
+  // connected to the others.
   void Map();
-  // Both add their models to those of Map, numbered on.
-  // The pairs that a guided match left out, and the mapper once more.
+  // Matches the pairs that guided matching skipped and maps again. Adds its models to those of Map.
   void MatchAllAndMap();
-  // The mapper once more, with lower thresholds.
+  // Maps again with lower thresholds. Adds its models to those of Map.
   void MapRelaxed();
 
-  // Of the model with most registered photographs; 0 and an error where there is no model.
+  // The number of registered photographs of the largest model; 0 where there is no model.
   int Registered() const;
+  // The largest model. Throws InputError where there is none.
   PosedImages ReadModel() const;
 
   std::filesystem::path LogFile(const std::string& step) const;
-  // Step by step; of a skipped step those of the call that did it.
+  // The seconds that each step took; for a skipped step those of the call that executed it.
   const std::vector<std::pair<std::string, double>>& Seconds() const { return seconds_; }
 
  private:
@@ -58,12 +61,11 @@ class ColmapSteps {
   std::filesystem::path Database() const { return workspace_ / "database.db"; }
   std::filesystem::path Sparse() const { return workspace_ / "sparse"; }
 
-  // Does the work of a step unless it is done already, from the same inputs and with its result in
-  // place. The work is told in which state it finds the step.
+  // Calls work(state) unless the step was finished from the same inputs and its result exists.
   void Step(const std::string& name, const nlohmann::json& inputs,
             const std::filesystem::path& result,
             const std::function<void(StepLedger::State)>& work);
-  // Adds an option by the name that this COLMAP has for it; nothing where it has none.
+  // Adds an option under the name that this version of COLMAP has for it; none where it has none.
   void AddKnown(const std::string& command, std::initializer_list<const char*> names, int value,
                 Arguments& arguments);
   void AddThreads(const std::string& command, std::initializer_list<const char*> names,
@@ -81,7 +83,7 @@ class ColmapSteps {
   void RunMapper(const std::string& step, const std::filesystem::path& target,
                  const Arguments& thresholds);
 
-  ColmapProgram colmap_;  // first: where it is missing, nothing is written
+  ColmapProgram colmap_;  // first, so that nothing is written where it is missing
   std::filesystem::path workspace_;
   ColmapOptions options_;
   int photos_;

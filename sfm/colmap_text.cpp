@@ -23,7 +23,7 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-// The words of one line, and the name of their place for messages.
+// The words of one line, and its location for messages.
 class Line {
  public:
   Line(const fs::path& file, int number, std::string_view text)
@@ -34,7 +34,7 @@ class Line {
   std::string Where() const { return fmt::format("{}:{}", file_->string(), number_); }
 
   std::string_view Word() {
-    if (rest_.empty()) throw InputError("{}: the line is cut short", Where());
+    if (rest_.empty()) throw InputError("{}: the line is truncated", Where());
     const auto end = std::min(rest_.find_first_of(kBlanks), rest_.size());
     const std::string_view word = rest_.substr(0, end);
     rest_ = Trimmed(rest_.substr(end));
@@ -58,9 +58,9 @@ class Line {
     return {x, y, Number<double>()};
   }
 
-  // All that is left: image names may hold blanks.
+  // The rest of the line: image names may contain blanks.
   std::string Rest() {
-    if (rest_.empty()) throw InputError("{}: the line is cut short", Where());
+    if (rest_.empty()) throw InputError("{}: the line is truncated", Where());
     return std::string(std::exchange(rest_, {}));
   }
 
@@ -123,7 +123,7 @@ std::vector<ImageRecord> ReadImagesText(const fs::path& file) {
     ImageRecord& image = images.emplace_back();
     image.id = line->Number<std::uint32_t>();
     const double w = line->Number<double>();
-    // Not inside the comma initializer, which asserts when an exception leaves it.
+    // Not inside the comma initializer, which asserts when an exception is thrown inside it.
     const Eigen::Vector3d xyz = line->Vector3();
     image.rotation << w, xyz;
     image.translation = line->Vector3();
@@ -133,7 +133,7 @@ std::vector<ImageRecord> ReadImagesText(const fs::path& file) {
     for (auto points = lines.Next(); points && !points->IsEmpty();) {
       const double x = points->Number<double>();
       image.points2d.emplace_back(x, points->Number<double>());
-      points->Word();  // the point's id: points3D says it too
+      points->Word();  // the id of the point, which points3D has too
     }
   }
   return images;

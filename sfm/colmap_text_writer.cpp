@@ -23,23 +23,23 @@ std::string CamerasText(const PosedImages& posed) {
   return text;
 }
 
-// The pixels in which each image sees points, in the order of the points.
-struct Sighting {
+struct Observation {
   Eigen::Vector2d pixel;
   std::size_t point = 0;
 };
-std::vector<std::vector<Sighting>> SightingsOf(const PosedImages& posed) {
-  std::vector<std::vector<Sighting>> sightings(posed.images.size());
+// The observations of each image, in the order of the points.
+std::vector<std::vector<Observation>> ObservationsOf(const PosedImages& posed) {
+  std::vector<std::vector<Observation>> observations(posed.images.size());
   for (std::size_t p = 0; p < posed.points.size(); ++p) {
     for (const TrackElement& seen : posed.points[p].track) {
-      sightings[seen.image].push_back({seen.pixel, p});
+      observations[seen.image].push_back({seen.pixel, p});
     }
   }
-  return sightings;
+  return observations;
 }
 
 std::string ImagesText(const PosedImages& posed,
-                       const std::vector<std::vector<Sighting>>& sightings) {
+                       const std::vector<std::vector<Observation>>& observations) {
   std::string text =
       "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; POINTS2D[] as (X, Y, POINT3D_ID)\n";
   for (std::size_t i = 0; i < posed.images.size(); ++i) {
@@ -49,7 +49,7 @@ std::string ImagesText(const PosedImages& posed,
     const Eigen::Vector3d t = camera_from_world.translation();
     text += fmt::format("{} {} {} {} {} {} {} {} {} {}\n", i + 1, q.w(), q.x(), q.y(), q.z(), t.x(),
                         t.y(), t.z(), image.camera + 1, image.name);
-    for (const Sighting& seen : sightings[i]) {
+    for (const Observation& seen : observations[i]) {
       text += fmt::format("{} {} {} ", seen.pixel.x(), seen.pixel.y(), seen.point + 1);
     }
     text += '\n';
@@ -59,7 +59,7 @@ std::string ImagesText(const PosedImages& posed,
 
 std::string PointsText(const PosedImages& posed) {
   std::string text = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n";
-  std::vector<std::size_t> next(posed.images.size(), 0);  // of each image's sightings
+  std::vector<std::size_t> next(posed.images.size(), 0);  // observation of each image
   for (std::size_t p = 0; p < posed.points.size(); ++p) {
     const SparsePoint& point = posed.points[p];
     text += fmt::format("{} {} {} {} {} {} {} {}", p + 1, point.x_in_world.x(),
@@ -77,7 +77,7 @@ std::string PointsText(const PosedImages& posed) {
 
 void WriteColmapText(const PosedImages& posed, const std::filesystem::path& folder) {
   WriteFileAtomically(folder / "cameras.txt", CamerasText(posed));
-  WriteFileAtomically(folder / "images.txt", ImagesText(posed, SightingsOf(posed)));
+  WriteFileAtomically(folder / "images.txt", ImagesText(posed, ObservationsOf(posed)));
   WriteFileAtomically(folder / "points3D.txt", PointsText(posed));
 }
 

@@ -27,13 +27,13 @@ namespace {
 constexpr std::size_t kColumns = 17;
 using PosesBounds = Eigen::Matrix<double, Eigen::Dynamic, kColumns>;
 
-// What a NumPy file must hold for xtensor, which trusts headers, to read it safely.
+// The contents of a NumPy file that is safe to read with xtensor, which does not validate headers.
 struct NpyContents {
   std::size_t rows = 0;
   bool is_double = false;
 };
 
-// The header is compared with the ones that fit the size of the file; none is interpreted.
+// Compares the header with those that fit the size of the file, without parsing it.
 // Format: NumPy Enhancement Proposal 1, version 1.0.
 std::optional<NpyContents> CheckNpy(std::string_view bytes) {
   constexpr std::size_t kPreamble = 10;
@@ -42,7 +42,7 @@ std::optional<NpyContents> CheckNpy(std::string_view bytes) {
   }
   const auto length_low = static_cast<unsigned char>(bytes[8]);
   const auto length_high = static_cast<unsigned char>(bytes[9]);
-  // NumPy pads to 128 bytes in all; xtensor reads longer headers wrongly.
+  // NumPy pads to 128 bytes in total; xtensor misreads longer headers.
   if (length_low > 127 || length_high != 0 || bytes.size() < kPreamble + length_low) {
     return std::nullopt;
   }
@@ -80,11 +80,11 @@ PosesBounds ReadPosesBounds(const fs::path& file) {
   const auto contents = CheckNpy(bytes);
   if (!contents) {
     throw InputError(
-        "{}: not a whole NumPy array of shape (N, 17) in float32 or float64; copy it again, or "
+        "{}: not a complete NumPy array of shape (N, 17) in float32 or float64; copy it again, or "
         "save it again with numpy.save",
         file.string());
   }
-  if (contents->rows == 0) throw InputError("{}: holds no poses", file.string());
+  if (contents->rows == 0) throw InputError("{}: contains no poses", file.string());
   try {
     return contents->is_double ? LoadNpy<double>(bytes) : LoadNpy<float>(bytes);
   } catch (const std::exception& error) {
@@ -104,8 +104,8 @@ Camera CameraFromHeightWidthFocal(const Eigen::Vector3d& hwf, const std::string&
   constexpr double kLargest = 1 << 20;
   if (!(height >= 1 && width >= 1 && height <= kLargest && width <= kLargest && focal > 0 &&
         std::isfinite(focal))) {
-    throw InputError("{}: height {}, width {}, focal length {} are not a camera's", where, height,
-                     width, focal);
+    throw InputError("{}: height {}, width {} and focal length {} are no valid camera", where,
+                     height, width, focal);
   }
   return {CameraModel::kSimplePinhole,
           static_cast<int>(std::lround(width)),
@@ -135,7 +135,7 @@ fs::path LlffImageFolder(const fs::path& folder) {
     }
   }
   if (reduced.empty()) {
-    throw InputError("{}: there is neither a folder images nor images_N beside poses_bounds.npy",
+    throw InputError("{}: has neither a folder images nor images_N beside poses_bounds.npy",
                      folder.string());
   }
   return reduced.begin()->second;
@@ -148,7 +148,7 @@ PosedImages ReadLlff(const fs::path& folder) {
   const fs::path image_folder = LlffImageFolder(folder);
   const std::vector<fs::path> files = ImageFilesIn(image_folder);
   if (static_cast<Eigen::Index>(files.size()) != rows.rows()) {
-    throw InputError("{}: holds {} poses, but {} has {} images; put all and only its images there",
+    throw InputError("{}: has {} poses, but {} has {} images; put exactly its images there",
                      result.source.string(), rows.rows(), image_folder.string(), files.size());
   }
   std::array<double, 2> range = {std::numeric_limits<double>::infinity(), 0};
@@ -166,7 +166,7 @@ PosedImages ReadLlff(const fs::path& folder) {
     const Camera camera = CameraFromHeightWidthFocal(pose.col(4), where);
     const double near = row[15], far = row[16];
     if (!(near > 0 && far >= near && std::isfinite(far))) {
-      throw InputError("{}: nearest depth {} and farthest {} are not positive and in this order",
+      throw InputError("{}: nearest depth {} and farthest depth {} are not positive and ascending",
                        where, near, far);
     }
     range = {std::min(range[0], near), std::max(range[1], far)};
@@ -177,7 +177,7 @@ PosedImages ReadLlff(const fs::path& folder) {
     }
     const auto fitted = FitToImage(camera, *stored);
     if (!fitted) {
-      throw InputError("{}: the image is {}x{} pixels, which is no scaled copy of its {}x{}", where,
+      throw InputError("{}: the image is {}x{} pixels, which is no scaled copy of {}x{}", where,
                        stored->width, stored->height, camera.width, camera.height);
     }
     image.camera = IndexOf(result.cameras, fitted->camera);

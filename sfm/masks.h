@@ -4,9 +4,9 @@
 
 namespace nerf::sfm {
 
-// Looks for the masks of photographs that have none yet: in a folder "masks" beside the photograph
-// or beside its folder, under the photograph's name and ".png" (COLMAP's convention), or under that
-// name with .png for its ending. Black marks the pixels that are masked out.
+// Finds the masks of photographs that have none yet: in a folder "masks" beside the photograph or
+// beside its folder, named like the photograph with ".png" appended (COLMAP's convention) or in
+// place of its extension. Black pixels are masked out.
 void FindMasks(PosedImages& posed);
 
 }  // namespace nerf::sfm

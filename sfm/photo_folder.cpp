@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Larger than any camera's pictures; a damaged header that claims more is not believed.
+// Larger than the images of any camera; a header with larger values counts as damaged.
 constexpr int kMaxSide = 1 << 16;
 constexpr int kMaxChannels = 64;
 
@@ -23,7 +23,7 @@ std::string FirstLine(std::string text) {
   return text.empty() ? "cannot be decoded" : text;
 }
 
-// Reads all rows, a few at a time: a photograph of 100 megapixels costs little memory.
+// Reads all rows, a few at a time, so that even 100 megapixels take little memory.
 bool DecodeAllRows(OIIO::ImageInput& input) {
   const OIIO::ImageSpec& spec = input.spec();
   const int rows = spec.tile_width > 0 ? spec.tile_height : 64;
@@ -40,8 +40,8 @@ bool DecodeAllRows(OIIO::ImageInput& input) {
   return true;
 }
 
-// Fills `photo`; returns why the file is unusable, or nothing.
-std::optional<std::string> Check(const fs::path& path, Photo& photo) {
+// Sets `photo`. Returns why the file is unusable, or nullopt.
+std::optional<std::string> Decode(const fs::path& path, Photo& photo) {
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input) return FirstLine(OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
@@ -49,10 +49,10 @@ std::optional<std::string> Check(const fs::path& path, Photo& photo) {
       spec.full_width < 1 || spec.full_height < 1 || spec.full_width > kMaxSide ||
       spec.full_height > kMaxSide || spec.nchannels < 1 || spec.nchannels > kMaxChannels ||
       spec.tile_height > kMaxSide) {
-    return fmt::format("its header claims {}x{} pixels of {} channels", spec.width, spec.height,
+    return fmt::format("its header claims {}x{} pixels with {} channels", spec.width, spec.height,
                        spec.nchannels);
   }
-  if (spec.deep) return "deep images hold no single colour a pixel";
+  if (spec.deep) return "a deep image, which has no single colour per pixel";
   photo.name = path.filename().string();
   photo.path = path;
   photo.format = input->format_name();
@@ -62,10 +62,10 @@ std::optional<std::string> Check(const fs::path& path, Photo& photo) {
   photo.orientation = orientation >= 1 && orientation <= 8 ? orientation : 1;
   photo.eight_bit = spec.format == OIIO::TypeUInt8;
   const bool decoded = DecodeAllRows(*input);
-  const std::string said = input->geterror();
-  if (!decoded) return FirstLine(said);
-  // libjpeg pads what is missing with grey and calls it a warning.
-  if (said.find("Premature end") != std::string::npos) return "is cut short";
+  const std::string message = input->geterror();
+  if (!decoded) return FirstLine(message);
+  // libjpeg fills missing pixels with grey and only warns.
+  if (message.find("Premature end") != std::string::npos) return "truncated";
   return std::nullopt;
 }
 
@@ -75,32 +75,32 @@ std::vector<fs::path> ListPhotos(const fs::path& folder) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) {
-    throw InputError("{}: no such folder; give the folder that holds the photographs",
-                     folder.string());
+    throw InputError("{}: no such folder; give the folder with the photographs", folder.string());
   }
   if (!fs::is_directory(status)) {
-    throw InputError("{}: is a file; give the folder that holds the photographs", folder.string());
+    throw InputError("{}: is a file; give the folder with the photographs", folder.string());
   }
   std::vector<fs::path> files;
-  std::string other_ending;
+  std::string other_extension;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     std::error_code ignored;  // a dangling link is no regular file
     const std::string name = it->path().filename().string();
     if (name.starts_with('.') || !it->is_regular_file(ignored)) continue;
-    if (HasImageEnding(it->path())) {
+    if (HasImageExtension(it->path())) {
       files.push_back(fs::absolute(it->path()).lexically_normal());
     } else if (it->path().has_extension()) {
-      other_ending = it->path().extension().string();
+      other_extension = it->path().extension().string();
     }
   }
   if (error) throw InputError("{}: cannot be listed: {}", folder.string(), error.message());
   if (files.empty()) {
-    throw InputError("{}: holds no photographs{}; give a folder of jpg, png, tif, exr, ... files",
-                     folder.string(),
-                     other_ending.empty() ? "" : fmt::format(" (but {} files)", other_ending));
+    throw InputError(
+        "{}: contains no photographs{}; give a folder of jpg, png, tif, exr, ... files",
+        folder.string(),
+        other_extension.empty() ? "" : fmt::format(" (but {} files)", other_extension));
   }
   if (files.size() == 1) {
-    throw InputError("{}: holds one photograph, {}; poses need at least two that overlap",
+    throw InputError("{}: contains only one photograph, {}; poses need at least two that overlap",
                      folder.string(), files[0].filename().string());
   }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
@@ -114,7 +114,7 @@ PhotoFolder CheckPhotos(const std::vector<fs::path>& files, int threads) {
   std::vector<Photo> photos(files.size());
   std::vector<std::optional<std::string>> reasons(files.size());
   ParallelForEach(
-      count, [&](std::int64_t i) { reasons[i] = Check(files[i], photos[i]); }, threads);
+      count, [&](std::int64_t i) { reasons[i] = Decode(files[i], photos[i]); }, threads);
 
   PhotoFolder result;
   for (int i = 0; i < count; ++i) {
@@ -130,8 +130,9 @@ PhotoFolder CheckPhotos(const std::vector<fs::path>& files, int threads) {
         result.skipped.empty()
             ? ""
             : fmt::format(" ({}: {})", result.skipped[0].name, result.skipped[0].reason);
-    throw InputError("{}: only {} of {} photographs can be read{}; copy them again, two at least",
-                     folder, result.photos.size(), count, first);
+    throw InputError(
+        "{}: only {} of {} photographs can be read{}; copy them again; at least two are needed",
+        folder, result.photos.size(), count, first);
   }
   return result;
 }

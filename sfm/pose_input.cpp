@@ -32,11 +32,11 @@ std::optional<fs::path> FindColmapModel(const fs::path& input) {
   return std::nullopt;
 }
 
-// The folder that holds most of the photographs that a model names.
+// The folder that contains most of the photographs of a model.
 fs::path FindColmapImages(const fs::path& input, const fs::path& model) {
   const std::vector<std::string> names = ColmapImageNames(model);
   std::vector<fs::path> folders = {input / "images", input};
-  // A model folder was given (project/sparse/0): its photographs lie beside or above it.
+  // For a model folder (project/sparse/0), the photographs are beside or above it.
   fs::path above = fs::absolute(input).lexically_normal();
   if (!above.has_filename()) above = above.parent_path();
   for (int level = 0; level < 2; ++level) {
@@ -56,7 +56,7 @@ fs::path FindColmapImages(const fs::path& input, const fs::path& model) {
   }
   if (most == 0) {
     throw InputError(
-        "{}: none of the {} images of this COLMAP model is there (the first: '{}', looked for in "
+        "{}: none of the {} images of this COLMAP model was found (the first is '{}', expected in "
         "{}); put the photographs into {}",
         model.string(), names.size(), names.empty() ? "" : names[0], folders[0].string(),
         folders[0].string());
@@ -78,9 +78,10 @@ InputLocation FindInFolder(const fs::path& input) {
     if (!ImageFilesIn(folder).empty()) return {InputKind::kPhotos, {}, folder};
   }
   throw InputError(
-      "{}: holds no photographs and no poses (looked for transforms.json, transforms_train.json, "
-      "poses_bounds.npy, a COLMAP model here, in sparse/ and colmap/sparse/, and image files here "
-      "and in images/)",
+      "{}: contains no photographs and no poses (neither transforms.json, transforms_train.json, "
+      "poses_bounds.npy, a COLMAP model here, in sparse/ or in colmap/sparse/, nor image files "
+      "here "
+      "or in images/)",
       input.string());
 }
 
@@ -114,7 +115,7 @@ PosedImages ReadPosedInput(const InputLocation& location) {
     case InputKind::kPhotos:
       break;
   }
-  throw InputError("{}: plain photographs have no poses yet; find them with COLMAP first",
+  throw InputError("{}: photographs without poses; find them first with nerf poses",
                    location.images.string());
 }
 

@@ -16,7 +16,7 @@ StepLedger::StepLedger(std::filesystem::path file) : file_(std::move(file)) {
   for (const json& entry : read) {
     if (!entry.is_object() || !entry.contains("step") || !entry["step"].is_string() ||
         !entry.contains("inputs")) {
-      return;  // what stands before the damage still holds
+      return;  // the entries before the damaged one are valid
     }
     steps_.push_back(entry);
   }
@@ -55,7 +55,7 @@ double StepLedger::Seconds(const std::string& step) const {
 }
 
 void StepLedger::Write() const {
-  // File names need not be UTF-8.
+  // File names may be invalid UTF-8.
   WriteFileAtomically(file_, steps_.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 

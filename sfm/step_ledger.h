@@ -6,27 +6,27 @@
 
 namespace nerf::sfm {
 
-// Which steps of a long job are finished, kept in a JSON file, so that a second call goes on where
-// the first one ended. Steps depend on one another in the order in which they are begun: beginning
-// one forgets those that came after it. A missing or damaged file counts as nothing done.
+// Records in a JSON file which steps of a long job are finished, so that a second call continues
+// where the first one stopped. Each step depends on those begun before it: beginning a step removes
+// the records of those after it. A missing or damaged file counts as no step finished.
 class StepLedger {
  public:
   explicit StepLedger(std::filesystem::path file);
 
   enum class State {
-    kNew,      // never begun since the steps before it last ran
+    kNew,      // not begun since the steps before it last ran
     kChanged,  // begun or finished, but from other inputs
     kBegun,    // begun from these inputs, not finished
     kDone,     // finished from these inputs
   };
-  // inputs: all that the result depends on and no step before it covers.
+  //   inputs  all inputs of the step's result except the results of earlier steps
   State StateOf(const std::string& step, const nlohmann::json& inputs) const;
 
-  // Both write the file, whole or not at all; throw InputError when they cannot.
+  // Both write the file atomically. Throw InputError when that is not possible.
   void Begin(const std::string& step, const nlohmann::json& inputs);
   void Finish(const std::string& step, double seconds);
 
-  // Of a finished step; 0 of others.
+  // The duration of a finished step; 0 for others.
   double Seconds(const std::string& step) const;
 
  private:

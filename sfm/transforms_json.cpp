@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace nerf::sfm {
 namespace {
 
-// What nerfstudio calls the lists of its splits; an image in two belongs to the first.
+// The keys of nerfstudio's lists of splits; an image in several lists belongs to the first.
 constexpr std::array<std::pair<const char*, Split>, 3> kSplitLists = {{
     {"train_filenames", Split::kTrain},
     {"test_filenames", Split::kTest},
@@ -34,12 +34,12 @@ std::string NameFromPath(const std::string& file_path) {
   return fs::path(file_path).lexically_normal().generic_string();
 }
 
-// Blender's exporter leaves the ending out.
+// Blender's exporter omits the extension.
 std::optional<fs::path> FindImage(const fs::path& path) {
   std::error_code error;
-  for (const char* ending : {"", ".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG"}) {
+  for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG"}) {
     fs::path candidate = path;
-    candidate += ending;
+    candidate += extension;
     if (fs::is_regular_file(candidate, error)) return candidate;
   }
   return std::nullopt;
@@ -70,11 +70,11 @@ void RequireNew(std::map<std::string, std::size_t>& frame_of, const std::string&
                 std::size_t frame, const std::string& where) {
   const auto [earlier, is_new] = frame_of.emplace(value, frame);
   if (is_new) return;
-  throw InputError("{} '{}' is that of frames[{}] too; remove one of the two", where, value,
+  throw InputError("{} '{}' is also that of frames[{}]; remove one of the two", where, value,
                    earlier->second);
 }
 
-// Gathers the frames of one or several files.
+// Collects the frames of one or several files.
 class Reader {
  public:
   explicit Reader(AbsentImages absent) : absent_(absent) {}
@@ -95,7 +95,7 @@ class Reader {
         throw InputError("{} is missing", frame.Where("file_path"));
       }
       const std::string path = NameFromPath(*file_path);
-      // Our own key: what the file that this one was made from called the image.
+      // Our own key: the name of the image in the source from which this file was written.
       const std::string name = NameFromPath(frame.String("source_name").value_or(path));
       RequireNew(frame_of_path, path, i, frame.Where("file_path"));
       RequireNew(frame_of_name, name, i, frame.Where("source_name"));
@@ -107,8 +107,8 @@ class Reader {
   PosedImages Result(const fs::path& file) && {
     if (result_.images.empty()) {
       throw InputError(
-          "{}: none of the {} images that it names is there (the first: '{}', looked for from {}); "
-          "put the photographs there or mend file_path",
+          "{}: none of its {} images was found (the first is '{}', relative to {}); put the "
+          "photographs there or fix file_path",
           file.string(), result_.missing.size(), result_.missing[0],
           file.has_parent_path() ? file.parent_path().string() : ".");
     }
@@ -127,7 +127,7 @@ class Reader {
     image.split = split;
     image.world_from_camera = ReadPose(frame);
     if (const auto mask = frame.String("mask_path")) image.mask = file.parent_path() / *mask;
-    // In an earlier file: train comes first, and what is trained on cannot be held out.
+    // Already in an earlier file: train comes first, and a training image cannot be held out.
     if (!name_of_path_.emplace(path_in_file, name).second) return;
     const auto path = FindImage(file.parent_path() / path_in_file);
     const auto stored = path ? ReadImageSize(*path) : std::nullopt;
@@ -145,8 +145,9 @@ class Reader {
     const auto fitted = FitToImage(camera, *stored);
     if (!fitted) {
       throw InputError(
-          "{}: the image '{}' is {}x{} pixels, which is no scaled copy of the {}x{} that w and h "
-          "say; mend w and h, or give the images that the file was made for",
+          "{}: the image '{}' is {}x{} pixels, which is no scaled copy of the {}x{} of w and h; "
+          "fix "
+          "w and h, or give the images for which the file was written",
           frame.Where("file_path"), path_in_file, stored->width, stored->height, camera.width,
           camera.height);
     }
@@ -173,7 +174,7 @@ class Reader {
         const std::string path = NameFromPath(entry.get<std::string>());
         const auto frame = name_of_path_.find(path);
         if (frame == name_of_path_.end()) {
-          throw InputError("{}: '{}' is the file_path of no frame", fields.Where(key), path);
+          throw InputError("{}: no frame has the file_path '{}'", fields.Where(key), path);
         }
         split_of_name.emplace(frame->second, split);
       }

@@ -13,12 +13,12 @@
 namespace nerf::sfm {
 namespace {
 
-// Keys of a frame, and those of the whole file behind them.
+// The keys of a frame, which override those of the whole file.
 class FrameKeys {
  public:
   FrameKeys(const JsonFields& frame, const JsonFields& file) : levels_{&frame, &file} {}
 
-  // The fields that hold a key, or those of the file.
+  // The fields of the frame where they have the key, else those of the file.
   const JsonFields& Holding(std::string_view key) const {
     return levels_[0]->Has(key) ? *levels_[0] : *levels_[1];
   }
@@ -77,7 +77,7 @@ std::optional<double> FocalAlong(const JsonFields& fields, const std::string& ax
   return FocalFromAngle(fields, "camera_angle_" + axis, 1, size);
 }
 
-// A frame that gives one focal length means both: those of the file do not belong to it.
+// One focal length of a frame stands for both; it is not combined with those of the file.
 Eigen::Vector2d ReadFocalLengths(const FrameKeys& keys, const Camera& camera) {
   for (const JsonFields* fields : keys.levels()) {
     const auto x = FocalAlong(*fields, "x", camera.width);
@@ -88,7 +88,7 @@ Eigen::Vector2d ReadFocalLengths(const FrameKeys& keys, const Camera& camera) {
                    keys.levels()[0]->Where("fl_x"));
 }
 
-// Whether the lens is a fisheye; throws where it is of a kind that these keys cannot describe.
+// Whether the lens is a fisheye. Throws for lens models that these keys cannot describe.
 bool ReadIsFisheye(const FrameKeys& keys) {
   for (const char* key : {"equirectangular", "latlong", "ftheta_p0"}) {
     const JsonFields& fields = keys.Holding(key);
@@ -206,7 +206,7 @@ nlohmann::json JsonFromCamera(const Camera& camera) {
     case CameraModel::kOpenCVFisheye:
       return lens("OPENCV_FISHEYE", {"k1", "k2", "k3", "k4"});
     case CameraModel::kFullOpenCV:
-      // nerfstudio hands k3 and k4 to OpenCV's rational model, and has no k5 and k6.
+      // nerfstudio passes k3 and k4 to OpenCV's rational model, and has no k5 and k6.
       if (AllZero({camera.params[10], camera.params[11]})) {
         return lens("OPENCV", {"k1", "k2", "p1", "p2", "k3", "k4"});
       }

@@ -11,7 +11,8 @@ namespace fs = std::filesystem;
 namespace nerf::sfm {
 namespace {
 
-// Follows links of the folders, as ".." in the result would, but keeps the image's own name.
+// The relative path of an image. Resolves links of folders, since ".." in the result would follow
+// them, but not that of the image itself.
 std::string PathFrom(const fs::path& folder, const fs::path& image) {
   std::error_code error;
   const fs::path image_folder = fs::absolute(image).parent_path();
@@ -58,8 +59,8 @@ void WriteTransformsJson(const PosedImages& posed, const fs::path& file) {
     frame["file_path"] = PathFrom(folder, image.path);
     if (!image.mask.empty()) frame["mask_path"] = PathFrom(folder, image.mask);
     frame["transform_matrix"] = JsonFromPose(image.world_from_camera);
-    // Our own keys: the path changes with the folder written into, the name may not; and where
-    // turning leaves the size as it is, the size cannot tell.
+    // Our own keys: the name must not change with the folder of the file, as file_path does; and
+    // the size does not show a rotation that leaves it unchanged.
     if (image.name != frame["file_path"]) frame["source_name"] = image.name;
     if (image.upright_by_exif) frame["upright_by_exif"] = true;
     if (const char* list = SplitListName(image.split)) lists[list].push_back(frame["file_path"]);

@@ -17,8 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file descriptor that closes itself, and with it a temporary file that removes itself unless it
-// was renamed.
+// Owns a file descriptor and its temporary file, which is removed unless it was renamed.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target)

@@ -15,11 +15,11 @@
 namespace nerf {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "files are little endian");
+static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 constexpr char kMetadataKey[] = "__metadata__", kCrcKey[] = "crc32";
 constexpr std::size_t kCrcSize = 4;
-constexpr std::uint64_t kLargestHeader = 100'000'000;  // bytes, as safetensors has it
+constexpr std::uint64_t kLargestHeader = 100'000'000;  // bytes, the limit of safetensors
 
 constexpr std::array<std::pair<std::string_view, std::uint64_t>, 5> kSizes = {
     {{"F32", 4}, {"F64", 8}, {"I32", 4}, {"I64", 8}, {"U8", 1}}};
@@ -41,7 +41,7 @@ T ValueAt(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// What is wrong in a header, for ReadCheckpoint to catch.
+// Throws where a header is invalid, for the constructor to catch.
 void Require(bool holds) {
   if (!holds) throw std::runtime_error("header");
 }
@@ -51,21 +51,21 @@ std::uint64_t Count(const nlohmann::json& number) {
   return number.get<std::uint64_t>();
 }
 
-// Where a tensor's bytes lie in the data.
-struct Place {
+// The bytes of a tensor within the data.
+struct ByteRange {
   std::uint64_t begin = 0, end = 0;
 };
-Place PlaceOf(const nlohmann::json& entry) {
+ByteRange RangeOf(const nlohmann::json& entry) {
   const auto& offsets = entry.at("data_offsets");
   return {Count(offsets.at(0)), Count(offsets.at(1))};
 }
 
-// Tensors share no bytes and leave none out: the file is as large as what it asks for.
-void CheckPlaces(const nlohmann::json& header, std::uint64_t data_size) {
+// Tensors must neither overlap nor leave gaps, so that the file is as large as its header claims.
+void CheckRanges(const nlohmann::json& header, std::uint64_t data_size) {
   std::map<std::uint64_t, std::uint64_t> end_of;
   for (const auto& [name, entry] : header.items()) {
     if (name == kMetadataKey) continue;
-    const auto [begin, end] = PlaceOf(entry);
+    const auto [begin, end] = RangeOf(entry);
     Require(begin <= end && end <= data_size);
     if (begin < end) Require(end_of.emplace(begin, end).second);
   }
@@ -79,7 +79,7 @@ void CheckPlaces(const nlohmann::json& header, std::uint64_t data_size) {
 
 // A tensor as the header describes it.
 StoredTensor TensorFrom(const nlohmann::json& entry, std::string_view data) {
-  const auto [begin, end] = PlaceOf(entry);
+  const auto [begin, end] = RangeOf(entry);
   StoredTensor tensor;
   tensor.type = entry.at("dtype");
   const auto known = std::ranges::find(kSizes, tensor.type, &decltype(kSizes)::value_type::first);
@@ -87,7 +87,7 @@ StoredTensor TensorFrom(const nlohmann::json& entry, std::string_view data) {
   std::uint64_t bytes = known->second;
   for (const auto& number : entry.at("shape")) {
     const std::uint64_t size = Count(number);
-    // No product that is larger than the file may wrap around into one that fits.
+    // Checked before multiplying, so that no product overflows into one that fits.
     Require(size <= data.size() && (size == 0 || bytes <= data.size() / size));
     bytes *= size;
     tensor.shape.push_back(static_cast<std::int64_t>(size));
@@ -108,7 +108,7 @@ StoredTensor TensorFrom(const nlohmann::json& entry, std::string_view data) {
 
 void WriteCheckpointFile(const std::filesystem::path& path, const nlohmann::json& meta,
                          const std::map<std::string, StoredTensor>& tensors) {
-  nlohmann::ordered_json header;  // the metadata first, as others write it
+  nlohmann::ordered_json header;  // the metadata first, as other writers do
   header[kMetadataKey] = {{"format", "nerf-cpu"},
                           {"version", std::to_string(kCheckpointVersion)},
                           {"meta", meta.dump()}};
@@ -124,7 +124,7 @@ void WriteCheckpointFile(const std::filesystem::path& path, const nlohmann::json
   describe(kCrcKey, "U8", {kCrcSize}, kCrcSize);
 
   std::string text = header.dump();
-  text.resize((text.size() + 7) / 8 * 8, ' ');  // tensors begin at a multiple of eight bytes
+  text.resize((text.size() + 7) / 8 * 8, ' ');  // tensors are aligned to eight bytes
   std::string bytes;
   bytes.reserve(8 + text.size() + end);
   Append<std::uint64_t>(bytes, text.size());
@@ -144,7 +144,7 @@ CheckpointFile::CheckpointFile(const std::filesystem::path& path) : bytes_(ReadW
                          Crc32(all.substr(0, all.size() - kCrcSize));
   if (!whole) {
     throw InputError(
-        "{}: is cut short, damaged, or no checkpoint ({} bytes); train again, or name a run folder",
+        "{}: is truncated, damaged, or no checkpoint ({} bytes); train again, or name a run folder",
         path.string(), all.size());
   }
   const std::uint64_t header_size = ValueAt<std::uint64_t>(all, 0);
@@ -154,7 +154,7 @@ CheckpointFile::CheckpointFile(const std::filesystem::path& path) : bytes_(ReadW
     const nlohmann::json& metadata = header.at(kMetadataKey);
     const std::string version = metadata.at("version");
     if (version != std::to_string(kCheckpointVersion)) RefuseVersion(path, version);
-    CheckPlaces(header, data.size());
+    CheckRanges(header, data.size());
     meta_ = nlohmann::json::parse(metadata.at("meta").get<std::string>());
     for (const auto& [name, entry] : header.items()) {
       if (name == kMetadataKey || name == kCrcKey) continue;
@@ -163,8 +163,8 @@ CheckpointFile::CheckpointFile(const std::filesystem::path& path) : bytes_(ReadW
   } catch (const InputError&) {
     throw;
   } catch (const std::exception&) {
-    // The sum was right, so somebody meant it so, but not a version of this program.
-    throw InputError("{}: cannot be understood; use the program that wrote it, or train again",
+    // The checksum is correct, so the file was written like this, but not by this program.
+    throw InputError("{}: has an invalid header; use the program that wrote it, or train again",
                      path.string());
   }
 }

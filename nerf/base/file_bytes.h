@@ -5,9 +5,9 @@
 
 namespace nerf {
 
-// Everything in a regular file, for files that nobody vouches for: never waits on a pipe, and
-// memory is bounded by the size of the file. Throws InputError naming the file when it is missing,
-// not a regular file, or unreadable.
+// The contents of a regular file, for untrusted files: never blocks on a pipe, and memory is
+// bounded by the size of the file. Throws InputError naming the file when it is missing, not a
+// regular file, or unreadable.
 std::string ReadFileBytes(const std::filesystem::path& file);
 
 }  // namespace nerf

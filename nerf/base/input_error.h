@@ -8,9 +8,10 @@
 
 namespace nerf {
 
-// Something that a person gave us is wrong: a file, a key, a flag. The message is one line that
-// names the file, the key and the mend. `main` prints it and exits with status 2. Names and values
-// in it come from hostile files too: control characters become spaces, what is too long is cut.
+// An error in the user's input: a file, a key, a flag. The message is one line that names the file,
+// the key and the fix. `main` prints it and exits with status 2. Since names and values in it may
+// come from hostile files, control characters are replaced by spaces and long messages are
+// shortened.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(OneLine(message)) {}

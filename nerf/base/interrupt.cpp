@@ -6,7 +6,7 @@ namespace nerf {
 namespace {
 
 std::atomic<bool> stop_requested = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not block");
 
 void OnSignal(int signal) {
   stop_requested = true;

@@ -4,8 +4,8 @@
 
 namespace nerf {
 
-// From here on Ctrl-C and SIGTERM set the returned flag instead of ending the program; a second
-// signal ends it.
+// From this call on, Ctrl-C and SIGTERM set the returned flag instead of terminating the program; a
+// second signal terminates it.
 const std::atomic<bool>& StopOnInterrupt();
 
 }  // namespace nerf

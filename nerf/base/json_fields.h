@@ -8,17 +8,17 @@
 
 namespace nerf {
 
-// Parses a JSON file. Python writes NaN and Infinity, which JSON does not know: they are read as
-// null, so that the message about them can name the key. Throws InputError naming the file, line
-// and column.
+// Parses a JSON file. NaN and Infinity, which Python writes although JSON has neither, are read as
+// null, so that the error about them can name the key. Throws InputError naming the file, line and
+// column.
 nlohmann::json ReadJsonFile(const std::filesystem::path& file);
 
 // Looks keys up in one object of a JSON file. Every getter throws InputError with file, place and
 // key when the value has another type; numbers must be finite.
 class JsonFields {
  public:
-  // prefix: what the messages put before a key: "transforms.json: ", "transforms.json: frames[3]."
   // Keeps a reference to `object`. Throws InputError when it is not an object.
+  //   prefix  put before a key in messages: "transforms.json: ", "transforms.json: frames[3]."
   JsonFields(const nlohmann::json& object, std::string prefix);
 
   bool Has(std::string_view key) const { return object_.contains(key); }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <mutex>
@@ -16,17 +17,8 @@
 namespace nerf {
 namespace {
 
-// The CPU quota of cgroup v2, in cores; 0 where there is none.
-double CgroupCores() {
-  std::ifstream file("/sys/fs/cgroup/cpu.max");
-  std::string quota;
-  double period = 0;
-  if (!(file >> quota >> period) || quota == "max" || period <= 0) return 0;
-  return std::strtod(quota.c_str(), nullptr) / period;
-}
-
-// 0: not chosen yet, then all cores. Kept here because omp_get_max_threads() is no memory: LibTorch
-// changes it behind our back when it starts.
+// 0: not set yet. Stored here because LibTorch changes omp_get_max_threads() when it is
+// initialised.
 std::atomic<int> num_threads = 0;
 
 // Keeps the first exception of several threads.
@@ -54,8 +46,8 @@ class FirstFailure {
 };
 
 #if defined(__SANITIZE_THREAD__)
-// GCC's OpenMP does not tell the thread sanitizer when its threads wait for each other; plain
-// threads do.
+// The thread sanitizer does not see the synchronisation inside GCC's OpenMP, but that of plain
+// threads.
 template <class F>
 void OnThreads(std::int64_t count, int threads, F&& f) {
   std::atomic<std::int64_t> next = 0;
@@ -67,8 +59,8 @@ void OnThreads(std::int64_t count, int threads, F&& f) {
   run();
 }
 #else
-// Items 0 ... count - 1, the next to whichever thread is free; where there is one for each thread,
-// always the same to the same, whose cache may still hold what it worked on.
+// Calls f(item) for items 0 ... count - 1, scheduled dynamically. With at most one item per thread,
+// the same thread always gets the same item, whose data may still be in its cache.
 template <class F>
 void OnThreads(std::int64_t count, int threads, F&& f) {
   if (count <= threads) {
@@ -83,14 +75,25 @@ void OnThreads(std::int64_t count, int threads, F&& f) {
 
 }  // namespace
 
+std::optional<double> ReadCpuQuota(const std::filesystem::path& cpu_max) {
+  std::ifstream file(cpu_max);
+  std::string quota;
+  double period = 0;
+  if (!(file >> quota >> period) || quota == "max" || !(period > 0)) return std::nullopt;
+  const double cores = std::strtod(quota.c_str(), nullptr) / period;
+  return cores > 0 ? std::optional(cores) : std::nullopt;
+}
+
+int CoresWithinQuota(int cores, std::optional<double> quota) {
+  if (quota && *quota < cores) cores = static_cast<int>(std::ceil(*quota));
+  return std::max(1, cores);
+}
+
 int AvailableCores() {
   cpu_set_t set;
   CPU_ZERO(&set);
-  int cores = sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : 1;
-  if (const double quota = CgroupCores(); quota > 0) {
-    cores = std::min(cores, static_cast<int>(std::ceil(quota)));
-  }
-  return std::max(1, cores);
+  const int cores = sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : 1;
+  return CoresWithinQuota(cores, ReadCpuQuota("/sys/fs/cgroup/cpu.max"));
 }
 
 void SetNumThreads(int threads) {

@@ -2,7 +2,7 @@
 
 namespace nerf {
 
-// The most memory that this process has held so far, in units of 10^6 bytes.
+// The peak resident memory of this process so far, in units of 10^6 bytes.
 double PeakMegabytes();
 
 }  // namespace nerf

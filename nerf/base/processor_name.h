@@ -4,8 +4,7 @@
 
 namespace nerf {
 
-// What the processor calls itself, "AMD EPYC ..."; "unknown processor" where the system does not
-// tell.
+// The model name of the processor, "AMD EPYC ..."; "unknown processor" where the system has none.
 std::string ProcessorName();
 
 }  // namespace nerf

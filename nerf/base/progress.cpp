@@ -16,7 +16,7 @@ std::string FormatDuration(double seconds) {
 }
 
 std::string FormatSeconds(double seconds) {
-  if (seconds > 1e7) return "for ever";
+  if (seconds > 1e7) return "forever";
   if (seconds >= 99.5) return FormatDuration(seconds);
   return fmt::format("{:.{}f} s", seconds, seconds < 9.95 ? 1 : 0);
 }

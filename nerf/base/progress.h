@@ -6,17 +6,19 @@
 
 namespace nerf {
 
-// A progress line on standard error: title, bar, count, seconds left, and a note.
-// Draws only on a terminal, at most ten times a second; elsewhere it stays silent.
+// A progress line on standard error: title, bar, count, time left, and a note. Drawn only on a
+// terminal, at most ten times a second.
 class ProgressLine {
  public:
-  // total: number of steps; 0 where it is not known (then there is no bar and no time left).
+  //   total  number of steps; 0 where it is unknown, then no bar and no time left are shown
+  //   start  number of steps done before
   ProgressLine(std::string title, std::int64_t total, std::int64_t start = 0);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // done: steps done so far; note: shown at the end of the line.
+  //   done  steps done so far
+  //   note  shown at the end of the line
   void Update(std::int64_t done, const std::string& note = {});
   // Clears the line, so that other output can follow. Called by the destructor too.
   void Finish();
@@ -36,7 +38,7 @@ class ProgressLine {
 // "1:05:09", "2:03", "0:07".
 std::string FormatDuration(double seconds);
 
-// "0.4 s", "40 s", "2:03", and "for ever" for infinity.
+// "0.4 s", "40 s", "2:03"; "forever" for infinity.
 std::string FormatSeconds(double seconds);
 
 }  // namespace nerf

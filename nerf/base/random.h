@@ -4,10 +4,10 @@
 
 namespace nerf {
 
-// Random numbers without hidden state: each is a function of its coordinates (seed, stream, index),
-// so that any thread can draw any of them, and a resumed run draws the same ones again. The state
-// of the generator is therefore just the seed and the step.
-// Source: the finaliser of SplitMix64 (Steele, Lea, Flood 2014) as a counter-based hash.
+// Counter-based random numbers: each is a function of its coordinates (seed, stream, index), so
+// that any thread can draw any of them and a resumed run draws the same ones again. The only state
+// of the generator is the seed and the step. Source: the finaliser of SplitMix64 (Steele, Lea,
+// Flood 2014) as a counter-based hash.
 inline std::uint64_t Mix64(std::uint64_t z) {
   z += 0x9e3779b97f4a7c15ull;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;

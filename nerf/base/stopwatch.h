@@ -4,7 +4,7 @@
 
 namespace nerf {
 
-// Seconds since it was made.
+// Measures the time since its construction.
 class Stopwatch {
  public:
   double Seconds() const {
@@ -15,10 +15,10 @@ class Stopwatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-// A watch that is read between one stage and the next.
+// Measures the time between consecutive stages.
 class LapTimer {
  public:
-  // Adds the time since the last reading, or since the beginning.
+  // Adds the time since the last call, or since construction.
   void Lap(double& seconds) {
     const auto now = std::chrono::steady_clock::now();
     seconds += std::chrono::duration<double>(now - last_).count();

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// No other writer, in this process or beside it, uses the same name.
+// A name that no other writer uses, in this process or another one.
 fs::path NameBeside(const fs::path& path) {
   static std::atomic<int> counter{0};
   return path.parent_path() / fmt::format(".{}.{}-{}{}", path.stem().string(), ::getpid(),

@@ -4,9 +4,10 @@
 
 namespace nerf {
 
-// A name beside a file that is about to be written, so that the file appears whole or not at all:
-// write to path(), close, then Keep(). Without Keep() the destructor removes what was written.
-// The ending is that of the final name, as it tells encoders the format.
+// A temporary file beside its final path, for writers that need a file name: write to path(),
+// close, then Keep(), so that the final file is never incomplete. Without Keep() the destructor
+// removes the temporary file. Its extension is that of the final name, from which encoders infer
+// the format.
 class TemporaryFile {
  public:
   // Throws InputError where the folder of `final_path` does not exist.
@@ -17,7 +18,7 @@ class TemporaryFile {
 
   const std::filesystem::path& path() const { return path_; }
 
-  // Gives the file its final name, in one step, replacing what stood there.
+  // Renames the file to its final name atomically, replacing an existing file.
   // Throws InputError naming the final path.
   void Keep();
 

@@ -60,7 +60,7 @@ std::vector<fs::path> ReadImageList(const fs::path& list, const fs::path& folder
   std::vector<fs::path> files;
   for (std::string line; std::getline(text, line);) {
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
-    if (!HasImageEnding(line)) continue;  // e.g. the first line, their number
+    if (!HasImageExtension(line)) continue;  // the first line counts them
     files.push_back(folder / fs::path(line).filename());
     if (!fs::exists(files.back())) {
       throw InputError("{}: lists {}, which does not exist in {}", list.string(), line,

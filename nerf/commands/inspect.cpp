@@ -30,8 +30,9 @@ struct InspectArguments {
 nlohmann::json JsonFrom(const PosedImages& posed, const Inspection& inspection) {
   nlohmann::json verdicts = nlohmann::json::array(), exposures = nlohmann::json::object();
   for (const Verdict& v : inspection.verdicts) {
-    nlohmann::json one = {{"effect", v.effect}, {"evidence", v.evidence}, {"decided", v.decided},
-                          {"on", v.on},         {"sure", v.Sure()},       {"figure", v.figure}};
+    nlohmann::json one = {{"effect", v.effect},           {"evidence", v.evidence},
+                          {"decided", v.decided},         {"on", v.on},
+                          {"confidence", v.Confidence()}, {"figure", v.figure}};
     if (v.threshold > 0) one["threshold"] = v.threshold;
     verdicts.push_back(one);
   }
@@ -41,7 +42,7 @@ nlohmann::json JsonFrom(const PosedImages& posed, const Inspection& inspection) 
   return {{"verdicts", verdicts}, {"exposure_stops", exposures}};
 }
 
-// Plain photographs, whose poses are yet to be found.
+// Photographs without poses.
 PosedImages WithoutPoses(const std::filesystem::path& folder) {
   PosedImages photographs;
   photographs.source = folder;
@@ -63,14 +64,15 @@ void RunInspect(const InspectArguments& arguments) {
   sfm::FindMasks(posed);
   Inspection inspection;
   if (has_poses) {
-    ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
+    ProgressLine progress("inspecting", static_cast<std::int64_t>(posed.images.size()));
     inspection = Inspect(posed, [&](int read) { progress.Update(read); });
     progress.Finish();
   } else {
     inspection = InspectPhotographs(posed);
     spdlog::warn(
-        "{}: plain photographs have no poses yet, which tell most; nerf poses finds them, and "
-        "nerf train looks again when it has them",
+        "{}: photographs without poses, which most verdicts need; find them with nerf poses, or "
+        "run "
+        "nerf train, which finds them and inspects again",
         arguments.input);
   }
   if (!inspection.warning.empty()) spdlog::warn("{}", inspection.warning);
@@ -87,19 +89,20 @@ void RunInspect(const InspectArguments& arguments) {
 }  // namespace
 
 void AddInspectCommand(CLI::App& app) {
-  auto* command = app.add_subcommand("inspect", "Which effects a capture calls for, and why");
+  auto* command = app.add_subcommand("inspect", "Which effects a capture needs, and why");
   const auto arguments = std::make_shared<InspectArguments>();
   command
-      ->add_option("input", arguments->input,
-                   "COLMAP project (its sparse points tell most), transforms.json, LLFF folder, or "
-                   "photographs, which tell least")
+      ->add_option(
+          "input", arguments->input,
+          "COLMAP project (best, since it has sparse points), transforms.json, LLFF folder, "
+          "or photographs without poses")
       ->required();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");
   command->add_option(
       "--picture", arguments->picture,
-      "FILE.png to draw: exposure of each photograph, and how much "
-      "points change with the angle of the view, which rises where things are glossy");
+      "FILE.png to write: the exposure of each photograph, and the colour residuals of points by "
+      "viewing angle, which grow where surfaces are glossy");
   command->footer(
       "Examples:\n"
       "  nerf inspect photos/fox/colmap --picture fox.png\n"

@@ -41,20 +41,20 @@ void PrintReport(const sfm::ColmapReport& report, const fs::path& transforms) {
     row("seconds, " + step, fmt::format("{:.1f}", seconds));
     total += seconds;
   }
-  row("seconds, in all", fmt::format("{:.1f}", total));
+  row("seconds, total", fmt::format("{:.1f}", total));
   row("poses", transforms.string());
 }
 
 void RunPoses(const PosesArguments& arguments) {
   fs::path folder = fs::absolute(arguments.folder).lexically_normal();
-  if (!folder.has_filename()) folder = folder.parent_path();  // a slash at the end
+  if (!folder.has_filename()) folder = folder.parent_path();  // a trailing slash
   const fs::path output = arguments.output.empty()
                               ? fs::path("runs") / (folder.filename().string() + "-poses")
                               : fs::path(arguments.output);
   const fs::path transforms = output / "transforms.json";
   const fs::path workspace = output / "colmap";
   if (fs::exists(transforms) && !fs::exists(workspace / "steps.json")) {
-    throw InputError("{}: is there already, and not from nerf poses; give another -o",
+    throw InputError("{}: exists already, but not from nerf poses; give another folder with -o",
                      transforms.string());
   }
   sfm::ColmapReport report;
@@ -68,31 +68,30 @@ void RunPoses(const PosesArguments& arguments) {
 
 void AddPosesCommand(CLI::App& app) {
   auto* command =
-      app.add_subcommand("poses", "Find the camera poses of a folder of photographs, with COLMAP");
+      app.add_subcommand("poses", "Finds the camera poses of a folder of photographs, with COLMAP");
   const auto arguments = std::make_shared<PosesArguments>();
   sfm::ColmapOptions& colmap = arguments->colmap;
   command->add_option("FOLDER", arguments->folder, "Folder of photographs")->required();
   command->add_option("-o,--output", arguments->output,
-                      "Where transforms.json and colmap/ go; runs/<name>-poses if not given");
+                      "Folder for transforms.json and colmap/; default: runs/<name>-poses");
   command
       ->add_option("--matcher", colmap.matcher,
-                   "Which pairs are compared: auto, exhaustive (all), sequential (neighbours),\n"
-                   "guided (those that look alike)")
+                   "Which pairs are matched: auto, exhaustive (all), sequential (neighbours),\n"
+                   "guided (the most similar ones)")
       ->capture_default_str();
-  command->add_option("--camera-model", colmap.camera_model, "COLMAP's name of the lens model")
+  command->add_option("--camera-model", colmap.camera_model, "COLMAP's name of the camera model")
       ->capture_default_str();
   command
       ->add_option("--max-image-size", colmap.max_image_size,
-                   "Longer side, in pixels, at which features are found")
+                   "Longer side, in pixels, to which photographs are reduced for features")
       ->capture_default_str();
   command
       ->add_option("--max-features", colmap.max_num_features,
-                   "Features a photo; matching takes time with its square")
+                   "Features per photograph; the time to match grows with the square")
       ->capture_default_str();
-  command->add_option("--threads", colmap.threads, "Threads; 0 takes all cores")
-      ->capture_default_str();
+  command->add_option("--threads", colmap.threads, "Threads; 0: all cores")->capture_default_str();
   command->footer(
-      "Run it again to go on after an interruption; finished steps are skipped.\n"
+      "After an interruption, run it again to continue; finished steps are skipped.\n"
       "Examples:\n"
       "  nerf poses photos/fox\n"
       "  nerf poses photos/fox -o fox-poses --max-image-size 3200\n"

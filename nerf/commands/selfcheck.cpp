@@ -13,26 +13,26 @@
 namespace nerf {
 namespace {
 
-constexpr int kExitWrongHere = 1;
+constexpr int kExitCaseFailed = 1;
 
 void PrintJson(const std::vector<CaseResult>& results, bool passed) {
   nlohmann::json rows = nlohmann::json::array();
   for (const CaseResult& result : results) {
     const NumericCase& c = *result.numeric_case;
     nlohmann::json row = {{"case", c.name},
-                          {"measures", c.error},
-                          {"bound", c.bound},
+                          {"measures", c.quantity},
+                          {"bound", c.tolerance.bound},
                           {"level", result.level},
                           {"passed", result.Passed()}};
-    // JSON has no infinity: a claim that does not hold has no error.
+    // JSON has no infinity: the error of a claim that does not hold is null.
     row["error"] = std::isfinite(result.error) ? nlohmann::json(result.error) : nlohmann::json();
     rows.push_back(row);
   }
   fmt::print("{}\n", nlohmann::json{{"passed", passed}, {"cases", rows}}.dump(2));
 }
 
-// A line a case, with its error at each SIMD level; of cases without vector code in the first
-// column.
+// One line per case, with its error at each SIMD level; cases without vector code have theirs in
+// the first column.
 void PrintTable(const std::vector<CaseResult>& results) {
   std::vector<std::string> levels = {""};
   for (const CaseResult& result : results) {
@@ -45,7 +45,7 @@ void PrintTable(const std::vector<CaseResult>& results) {
     const auto last = std::find_if(first, results.end(), [&](const CaseResult& result) {
       return result.numeric_case != first->numeric_case;
     });
-    fmt::print("{:<41}  {:>7.1e}", first->numeric_case->name, first->numeric_case->bound);
+    fmt::print("{:<41}  {:>7.1e}", first->numeric_case->name, first->numeric_case->tolerance.bound);
     for (const std::string& level : levels) {
       const auto found = std::find_if(
           first, last, [&level](const CaseResult& result) { return result.level == level; });
@@ -71,20 +71,19 @@ void RunSelfcheck(bool json) {
     PrintTable(results);
     fmt::print("{} of {} pass\n", std::ssize(results) - failed, results.size());
   }
-  if (failed > 0) throw CLI::RuntimeError(kExitWrongHere);
+  if (failed > 0) throw CLI::RuntimeError(kExitCaseFailed);
 }
 
 }  // namespace
 
 void AddSelfcheckCommand(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "selfcheck", "is the arithmetic right on this processor? in under a minute");
+  auto* command =
+      app.add_subcommand("selfcheck", "Checks the numerics on this processor, in under a minute");
   const auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "print JSON, with what each case measures");
+  command->add_flag("--json", *json, "print JSON, with the quantity that each case measures");
   command->footer(
-      "Measures the hard cases of the numerics against slow, exact forms, on every SIMD level "
-      "that\n"
-      "this processor has. Exit status 1 where one is out of its bound.\n"
+      "Compares numerically hard cases with slow, exact references, at every SIMD level of this\n"
+      "processor. The exit status is 1 when an error exceeds its bound.\n"
       "Examples:\n"
       "  nerf selfcheck\n"
       "  nerf selfcheck --json > selfcheck.json");

@@ -86,10 +86,10 @@ void TrainingDisplay::Show(const CaptureInspected& event) {
 void TrainingDisplay::Show(const DataPlanned& event) {
   const DataPlan& plan = event.plan;
   const std::string share =
-      plan.held == plan.pixels
+      plan.stored_pixels == plan.pixels
           ? ""
           : fmt::format(", of every {:.3g} pixels one at random (data.memory_mb allows no more)",
-                        static_cast<double>(plan.pixels) / static_cast<double>(plan.held));
+                        static_cast<double>(plan.pixels) / static_cast<double>(plan.stored_pixels));
   Print(
       "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels; {} MB of "
       "pixels held{}\n",

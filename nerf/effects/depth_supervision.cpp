@@ -25,7 +25,7 @@ void AddSparseDepths(const PosedImages& sparse, const SceneNormalization& normal
   std::map<std::string, View*> views;
   for (View& view : data.train) {
     views[view.name] = &view;
-    view.points.clear();
+    view.depth_observations.clear();
   }
   for (const SparsePoint& point : sparse.points) {
     if (point.track.size() < kFewestSightings || point.reprojection_error > kLargestError) continue;
@@ -40,7 +40,7 @@ void AddSparseDepths(const PosedImages& sparse, const SceneNormalization& normal
       const auto column = static_cast<std::int64_t>(pixel->x());
       const auto row = static_cast<std::int64_t>(pixel->y());
       if (column >= view.camera.width || row >= view.camera.height) continue;
-      view.points.push_back(
+      view.depth_observations.push_back(
           {row * view.camera.width + column, static_cast<float>(x_in_camera.norm())});
     }
   }

@@ -17,9 +17,9 @@ void AddFacts(const PhotographFacts& facts, std::vector<Verdict>& verdicts) {
                ? fmt::format("{:.0f} % of the pixels are transparent", 100 * facts.transparent)
                : "no pixel is transparent"));
   verdicts.push_back(
-      Fact(kHdr, facts.linear, facts.beyond_white,
+      Fact(kHdr, facts.linear, facts.above_white,
            facts.linear ? fmt::format("linear radiance, {:.1f} % of the pixels brighter than 1",
-                                      100 * facts.beyond_white)
+                                      100 * facts.above_white)
                         : "display-referred files"));
 }
 
@@ -38,7 +38,7 @@ Inspection InspectionOf(const CaptureEvidence& evidence) {
 SceneNormalization BoundedFrame(const CaptureEvidence& evidence) {
   const Verdict unbounded = kUnbounded.judge(evidence);
   if (unbounded.on) return evidence.frame;
-  return FittedTo(evidence.hull ? *evidence.hull : evidence.shares.near, evidence.frame);
+  return NormalizedTo(evidence.hull ? *evidence.hull : evidence.shares.near, evidence.frame);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ RobustOptions RobustOptions::At(double progress) const {
 
 Verdict JudgeRobust(const TrackColors& colors, const PhotographFit& fit) {
   std::vector<double> residuals;
-  for (const auto& residual : fit.left_over) {
+  for (const auto& residual : fit.residuals) {
     residuals.push_back(std::fabs(static_cast<double>(residual.mean())));
   }
   const double noise = kDeviationOfMedian * Quantile(residuals, 0.5);

@@ -25,7 +25,7 @@ Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit)
   std::map<int, Spread> of_point;
   for (std::size_t i = 0; i < colors.seen.size(); ++i) {
     Spread& spread = of_point[colors.seen[i].point];
-    spread.residual.push_back(std::fabs(static_cast<double>(fit.left_over[i].mean())));
+    spread.residual.push_back(std::fabs(static_cast<double>(fit.residuals[i].mean())));
     spread.contrast.push_back(static_cast<double>(colors.seen[i].contrast));
   }
   std::size_t judged = 0, changing = 0;
@@ -33,7 +33,7 @@ Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit)
     if (spread.residual.size() < kFewestViews) continue;
     ++judged;
     const double change = kDeviationOfMedian * Quantile(spread.residual, 0.5);
-    if (change > kFlatChange + Quantile(spread.contrast, 0.5)) ++changing;
+    if (change > kTexturelessVariation + Quantile(spread.contrast, 0.5)) ++changing;
   }
   if (judged < kFewestPoints) {
     return Undecided(kViewDependence.name, fmt::format("only {} points are seen {} times and more",

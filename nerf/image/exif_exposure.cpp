@@ -9,12 +9,12 @@
 namespace nerf {
 namespace {
 
-// Cameras round the APEX forms: more than this, in stops, is a contradiction.
+// Difference in stops that counts as a contradiction. Cameras round the APEX forms.
 constexpr double kContradiction = 1.0;
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kAbsent = std::numeric_limits<float>::quiet_NaN();
 
-// One quantity that may stand in the file as it is and as a logarithm, in stops of light.
+// A quantity that may be in the file as a plain number and as a logarithm (APEX), in stops.
 struct Quantity {
   std::optional<double> stops;
   std::string contradiction;
@@ -39,11 +39,11 @@ Quantity FromBoth(const char* plain_name, float plain, double stops_of_plain, co
 std::optional<ExifExposure> ReadExifExposure(const std::filesystem::path& path) {
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input) {
-    OIIO::geterror();  // training names the file
+    OIIO::geterror();  // training reports the file
     return std::nullopt;
   }
   const OIIO::ImageSpec& spec = input->spec();
-  const auto number = [&spec](const char* name) { return spec.get_float_attribute(name, kNone); };
+  const auto number = [&spec](const char* name) { return spec.get_float_attribute(name, kAbsent); };
   const float time = number("ExposureTime"), shutter = number("Exif:ShutterSpeedValue");
   const float f_number = number("FNumber"), aperture = number("Exif:ApertureValue");
   float iso = number("Exif:PhotographicSensitivity");

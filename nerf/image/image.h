@@ -5,8 +5,8 @@
 
 namespace nerf {
 
-// How pixel values relate to light. Photographs are display-referred (sRGB transfer); EXR and HDR
-// files hold values proportional to radiance.
+// How pixel values relate to light: display-referred with the sRGB transfer function, as
+// photographs are, or proportional to radiance, as EXR and HDR files are.
 enum class ColorEncoding { kSrgb, kLinear };
 
 // An image in memory: `height` rows of `width` pixels of `channels` floats, top row first.

@@ -9,7 +9,7 @@
 namespace nerf {
 namespace {
 
-constexpr int kAlpha = 3;  // its channel, where there is one
+constexpr int kAlpha = 3;  // the alpha channel, where there is one
 
 int NumColors(const Image& image) { return std::min(image.channels, kAlpha); }
 
@@ -27,8 +27,8 @@ Image WithTransfer(const Image& image, ColorEncoding encoding, Transfer transfer
   return result;
 }
 
-// Mean of the block whose first pixel is (x0, y0); `image` is linear. Colours count by their alpha;
-// where nothing in the block is opaque, they count alike.
+// Mean of the block whose first pixel is (x0, y0); `image` is linear. Colours are weighted by their
+// alpha; where the whole block is transparent, equally.
 void AverageBlock(const Image& image, int x0, int y0, int factor, float* mean) {
   std::array<double, 4> weighted{};
   std::array<double, 4> plain{};

@@ -28,7 +28,7 @@ std::string Lowercase(std::string text) {
   return text;
 }
 
-// OpenImageIO explains itself over several lines; an InputError is one.
+// Messages of OpenImageIO may have several lines; those of InputError have one.
 std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 void CheckSize(std::int64_t width, std::int64_t height, const fs::path& path) {
@@ -64,7 +64,7 @@ int Orientation(const OIIO::ImageSpec& spec) {
   return orientation >= 1 && orientation <= 8 ? orientation : 1;
 }
 
-// Which channels of the file are R, G, B and, where it has one, A.
+// The indices of the file's channels R, G, B and, where it has one, A.
 std::vector<int> PickChannels(const OIIO::ImageSpec& spec, const fs::path& path) {
   const auto named = [&spec](std::string_view name) {
     const auto found = std::ranges::find(spec.channelnames, name);
@@ -91,23 +91,23 @@ bool IsLinear(const OIIO::ImageInput& input) {
   return input.spec().format.is_floating_point() || input.format_name() == std::string("openexr");
 }
 
-// Reads all channels of the file as float; a decoder that ran out of bytes is an error.
+// Reads all channels of the file as float. A truncated file is an error.
 std::vector<float> ReadAllChannels(OIIO::ImageInput& input, const fs::path& path) {
   const OIIO::ImageSpec& spec = input.spec();
   std::vector<float> raw(static_cast<std::size_t>(spec.width) * spec.height * spec.nchannels);
   const bool read = input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, raw.data());
   const bool closed = input.close();
   const std::string complaint = input.geterror();
-  // libjpeg fills what is missing with grey and only warns.
+  // libjpeg fills missing pixels with grey and only warns.
   const bool cut_short = Lowercase(complaint).find("premature end") != std::string::npos;
   if (!read || !closed || cut_short) {
-    throw InputError("{}: damaged or cut short: {}", path.string(),
+    throw InputError("{}: damaged or truncated: {}", path.string(),
                      complaint.empty() ? "no more pixels" : FirstLine(complaint));
   }
   return raw;
 }
 
-// Data window to display window: pixels outside the data are 0.
+// Copies the data window into the display window; pixels outside the data are 0.
 Image Gather(const OIIO::ImageSpec& spec, const std::vector<float>& raw,
              const std::vector<int>& channels, ColorEncoding encoding) {
   Image image(spec.full_width, spec.full_height, static_cast<int>(channels.size()), encoding);
@@ -145,7 +145,7 @@ void MakeAlphaStraight(Image& image) {
   }
 }
 
-// By hand, because ImageBufAlgo::reorient of OpenImageIO 2.4 mistakes orientation 5 for 7.
+// Not ImageBufAlgo::reorient, which in OpenImageIO 2.4 handles orientation 5 as 7.
 Image TurnUpright(const Image& stored, int orientation) {
   const bool transposed = orientation >= 5;
   const bool flip_x = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
@@ -183,12 +183,11 @@ Image Decode(OIIO::ImageInput& input, const fs::path& path) {
 enum class FileFormat { kPng, kJpeg, kExr };
 
 FileFormat FormatOf(const fs::path& path) {
-  const std::string ending = Lowercase(path.extension().string());
-  if (ending == ".png") return FileFormat::kPng;
-  if (ending == ".jpg" || ending == ".jpeg") return FileFormat::kJpeg;
-  if (ending == ".exr") return FileFormat::kExr;
-  throw InputError("{}: cannot write images of this ending, give .png, .jpg or .exr",
-                   path.string());
+  const std::string extension = Lowercase(path.extension().string());
+  if (extension == ".png") return FileFormat::kPng;
+  if (extension == ".jpg" || extension == ".jpeg") return FileFormat::kJpeg;
+  if (extension == ".exr") return FileFormat::kExr;
+  throw InputError("{}: unknown image extension; give .png, .jpg or .exr", path.string());
 }
 
 void Encode(const fs::path& path, const fs::path& shown_path, OIIO::ImageSpec spec,

@@ -44,14 +44,13 @@ std::array<double, kWindow> GaussianWindow() {
   return window;
 }
 
-// Window means along one row of the image (one entry a colour value, colours interleaved).
+// Window means along one row of the image, one entry per colour value, colours interleaved.
 struct RowMoments {
   explicit RowMoments(std::size_t size) : a(size), b(size), aa(size), bb(size), ab(size) {}
   std::vector<double> a, b, aa, bb, ab;
 };
 
-// Sums the window down the columns below row y; the values of a row then still await the sum along
-// x.
+// The vertical pass of the separable window, over the rows from y on.
 void SumDown(const Pair& pair, int y, const std::array<double, kWindow>& window, RowMoments& sums) {
   for (auto* row : {&sums.a, &sums.b, &sums.aa, &sums.bb, &sums.ab}) std::ranges::fill(*row, 0.0);
   for (int i = 0; i < kWindow; ++i) {
@@ -70,6 +69,7 @@ void SumDown(const Pair& pair, int y, const std::array<double, kWindow>& window,
   }
 }
 
+// The horizontal pass.
 void SumAlong(const std::vector<double>& from, int channels,
               const std::array<double, kWindow>& window, std::vector<double>& to) {
   std::ranges::fill(to, 0.0);

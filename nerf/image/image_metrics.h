@@ -5,16 +5,16 @@
 
 namespace nerf {
 
-// Both metrics compare two images as they would be saved: 8-bit sRGB, rounded and clamped; a linear
-// image passes through the sRGB transfer first, and one with alpha is laid over white.
-// Both throw InputError where the two differ in size.
+// Both metrics compare two images as they would be saved: composited on white where they have
+// alpha, converted to sRGB, clamped and rounded to 8 bits. Both throw InputError where the two
+// differ in size.
 
 // Peak signal-to-noise ratio in dB over all pixels and colours, peak 1. Equal images: +infinity.
 double Psnr(const Image& a, const Image& b);
 
 // Structural similarity, mean over pixels and colours; 1 for equal images.
 // Source: Wang et al. 2004: Gaussian window of 11 x 11, sigma 1.5, K1 = 0.01, K2 = 0.03, range 1;
-// population covariance, only windows that lie wholly inside the image.
+// population covariance, only windows entirely inside the image.
 // Throws InputError where an image is smaller than the window.
 double Ssim(const Image& a, const Image& b);
 

@@ -33,7 +33,7 @@ bool IsCameraRaw(const std::filesystem::path& file) {
 
 bool StoresLinearLight(const std::filesystem::path& file) {
   const auto input = OIIO::ImageInput::open(file.string());
-  if (!input) return false;  // ReadImage says why
+  if (!input) return false;  // ReadImage reports why
   const int bits = input->spec().get_int_attribute(
       "oiio:BitsPerSample", 8 * static_cast<int>(input->spec().format.size()));
   return bits > 8 || IsCameraRaw(*input);

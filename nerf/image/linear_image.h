@@ -6,21 +6,20 @@
 
 namespace nerf {
 
-// What the numbers of an image file mean.
+// How the values of an image file are interpreted. Camera raw is always linear: the sRGB curve that
+// its decoder applies is inverted.
 enum class InputEncoding {
   kAuto,    // 8-bit integers: sRGB; more bits and floats: linear
-  kSrgb,    // integers: sRGB; floats: linear all the same
+  kSrgb,    // integers: sRGB; floats: linear
   kLinear,  // proportional to light
 };
-// Camera raw is what the sensor counted, so linear whatever is said of it: the sRGB curve that its
-// decoder lays over it is undone.
 
-// Whether a file holds linear light by itself, as kAuto takes it: more than 8 bits, floats, camera
-// raw. False too where it cannot be opened.
+// Whether kAuto takes a file as linear: more than 8 bits, floats, or camera raw. False where it
+// cannot be opened.
 bool StoresLinearLight(const std::filesystem::path& file);
 
-// Whether a file's numbers have a largest one, at which what is brighter was cut off: integers, not
-// floats. True too where it cannot be opened.
+// Whether a file stores integers, which clip bright light, and not floats. True where it cannot be
+// opened.
 bool StoresIntegers(const std::filesystem::path& file);
 
 // Reads an image as linear light, 3 channels; alpha is dropped. Integers are scaled to [0,1].

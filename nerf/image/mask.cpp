@@ -21,14 +21,14 @@ Image ReadMask(const std::filesystem::path& path, int width, int height, bool up
   return mask;
 }
 
-std::vector<std::uint32_t> WholePixels(const Image& mask, int factor) {
-  const Image left = Downscale(mask, factor);
-  std::vector<std::uint32_t> whole;
-  for (std::size_t i = 0; i < left.pixels.size(); ++i) {
-    // Not 1, for the mean of many ones may round.
-    if (left.pixels[i] > 0.9999f) whole.push_back(static_cast<std::uint32_t>(i));
+std::vector<std::uint32_t> UnmaskedPixels(const Image& mask, int factor) {
+  const Image unmasked_share = Downscale(mask, factor);
+  std::vector<std::uint32_t> unmasked;
+  for (std::size_t i = 0; i < unmasked_share.pixels.size(); ++i) {
+    // Not 1, since the mean of many ones may be rounded.
+    if (unmasked_share.pixels[i] > 0.9999f) unmasked.push_back(static_cast<std::uint32_t>(i));
   }
-  return whole;
+  return unmasked;
 }
 
 Image WithMask(const Image& photograph, const Image& mask) {

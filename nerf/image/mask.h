@@ -8,19 +8,20 @@
 
 namespace nerf {
 
-// What black pixels of a mask mean: they do not count, or nothing stands there.
+// What the black pixels of a mask mean: the photograph is invalid there (say, a passer-by), or the
+// scene is empty there.
 enum class MaskMeaning { kIgnore, kEmpty };
 
-// Which part of each pixel a mask leaves: 0 where it is black, 1 elsewhere.
-//   width, height  of the photograph, which the mask must have
-//   upright_by_exif  turn it as the photograph is turned
-// Throws InputError naming the file when it is missing, no image, or of another size.
+// Reads a mask: 0 where the file is black, 1 elsewhere.
+//   width, height    of its photograph
+//   upright_by_exif  rotate by the EXIF orientation, as the photograph is
+// Throws InputError naming the file when it is missing, is no image, or has another size.
 Image ReadMask(const std::filesystem::path& path, int width, int height, bool upright_by_exif);
 
-// The pixels of the downscaled photograph no part of which is masked out, y * width + x, rising.
-std::vector<std::uint32_t> WholePixels(const Image& mask, int factor);
+// The pixels of the downscaled photograph of which no part is masked out: y * width + x, ascending.
+std::vector<std::uint32_t> UnmaskedPixels(const Image& mask, int factor);
 
-// The photograph with the mask as its alpha, or as a part of the alpha that it has.
+// The photograph with its alpha (1 where it has none) multiplied by the mask.
 Image WithMask(const Image& photograph, const Image& mask);
 
 }  // namespace nerf

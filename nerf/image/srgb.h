@@ -4,13 +4,13 @@
 
 namespace nerf {
 
-// The sRGB transfer function and its inverse (IEC 61966-2-1), on [0,1]; linear with slope 12.92
-// near 0 and, as an odd function, below it; the power law goes on above 1.
+// The sRGB transfer function and its inverse (IEC 61966-2-1), extended beyond [0,1]: as an odd
+// function below 0, and by the power law above 1.
 float SrgbFromLinear(float linear);
 float LinearFromSrgb(float srgb);
 
-// An sRGB value as an 8-bit file stores it: clamped to [0,1], scaled to [0,255], rounded half up.
-// The value must be a number.
+// An sRGB value as stored in an 8-bit file: clamped to [0,1], scaled to [0,255], rounded half up.
+// Must not be NaN.
 std::uint8_t ByteFromSrgb(float srgb);
 
 }  // namespace nerf

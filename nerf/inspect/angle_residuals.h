@@ -8,20 +8,21 @@
 
 namespace nerf {
 
-// Log light, by which places without any texture may change.
-inline constexpr double kFlatChange = 0.05;
+// How much the log light of a place without texture may vary between photographs.
+inline constexpr double kTexturelessVariation = 0.05;
 
-// What is left over of the light of points that are seen at about the same angle from where they
-// are seen on average.
+// The residuals of sightings in one range of angles, each between the direction to the camera and
+// the mean direction to all cameras that observe the point.
 struct AngleResiduals {
-  double degrees = 0;  // the middle of the angles
+  double degrees = 0;  // the centre of the range
   int sightings = 0;
-  double quartiles[3] = {};  // of what is left over, as a part of what texture explains
+  double quartiles[3] = {};  // of |residual| relative to the variation that texture explains
 };
 
-// Grows with the angle where surfaces are glossy; stays as it is where only noise is left over.
-//   returns  by angle, 5 degrees each, only those with enough sightings; of points that are seen
-//            often
+// The residuals of a fit by viewing angle. They grow with the angle where surfaces are glossy and
+// stay constant where they are only noise.
+//   returns  ranges of 5 degrees, ascending: those with at least 30 sightings, of points with at
+//            least 5 sightings
 std::vector<AngleResiduals> ResidualsByAngle(const PosedImages& posed, const TrackColors& colors,
                                              const PhotographFit& fit);
 

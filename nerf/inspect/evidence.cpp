@@ -29,7 +29,7 @@ CaptureEvidence CollectEvidenceOfPhotographs(const PosedImages& photographs) {
   CheckMasks(photographs);
   CaptureEvidence evidence;
   evidence.posed = &photographs;
-  evidence.facts = LookAtPhotographs(photographs);
+  evidence.facts = ExaminePhotographs(photographs);
   evidence.has_poses = false;
   SetUnknown("no poses yet to tell from", evidence);
   return evidence;
@@ -41,11 +41,11 @@ CaptureEvidence CollectEvidence(const PosedImages& posed, bool may_learn_backgro
   CaptureEvidence evidence;
   evidence.posed = &posed;
   evidence.may_learn_background = may_learn_background;
-  evidence.facts = LookAtPhotographs(posed);
+  evidence.facts = ExaminePhotographs(posed);
   evidence.frame = NormalizeScene(posed);
   evidence.has_points = posed.points.size() >= kFewestPoints;
   if (evidence.HasAlpha()) {
-    evidence.hull = BallAboutHull(posed, evidence.frame, read);
+    evidence.hull = BoundingBallOfHull(posed, evidence.frame, read);
   } else if (evidence.has_points) {
     evidence.shares = SharesOfPoints(posed, evidence.frame);
   }

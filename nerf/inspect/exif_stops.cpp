@@ -16,8 +16,7 @@ ExifStops ReadExifStops(const PosedImages& posed) {
     if (!exposure) return {};
     if (!exposure->contradiction.empty()) {
       return {{},
-              fmt::format("{}: EXIF {}; the exposures that EXIF tells of are not used, mend or "
-                          "remove the entry",
+              fmt::format("{}: EXIF {}; no exposure from EXIF is used; fix or remove the entry",
                           image.path.string(), exposure->contradiction)};
     }
     all.stops.push_back(exposure->stops);

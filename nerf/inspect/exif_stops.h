@@ -7,12 +7,12 @@
 
 namespace nerf {
 
-// What the cameras have written of their exposures, for the whole capture.
+// The exposures of a capture from EXIF.
 struct ExifStops {
-  // Of each photograph against their mean, log2 of light. Empty where one has none, or contradicts
-  // itself: exposures that are known in part cannot be compared.
+  // Exposure of each photograph relative to their mean, log2 of light. Empty where a photograph has
+  // none or contradicts itself, since exposures that are partly known cannot be compared.
   std::vector<double> stops;
-  std::string contradiction;  // one line that names the file, or empty
+  std::string contradiction;  // a message that names the file, or empty
 };
 
 ExifStops ReadExifStops(const PosedImages& posed);

@@ -11,10 +11,10 @@
 namespace nerf {
 namespace {
 
-constexpr std::size_t kPhotographs = 8;  // to look at
+constexpr std::size_t kMostExamined = 8;
 
 struct Sums {
-  double pixels = 0, transparent = 0, beyond_white = 0;
+  double pixels = 0, transparent = 0, above_white = 0;
   double masked_pixels = 0, masked = 0, sum = 0, squares = 0;  // the last two of masked values
 
   void Add(const Image& photograph) {
@@ -22,7 +22,7 @@ struct Sums {
       const float* const at = &photograph.pixels[i];
       ++pixels;
       if (photograph.channels == 4 && at[3] < 0.5f) ++transparent;
-      if (std::max({at[0], at[1], at[2]}) > 1) ++beyond_white;
+      if (std::max({at[0], at[1], at[2]}) > 1) ++above_white;
     }
   }
   void AddMasked(const Image& photograph, const Image& mask) {
@@ -41,7 +41,7 @@ struct Sums {
 
 }  // namespace
 
-PhotographFacts LookAtPhotographs(const PosedImages& posed) {
+PhotographFacts ExaminePhotographs(const PosedImages& posed) {
   PhotographFacts facts;
   facts.photographs = static_cast<int>(posed.images.size());
   std::vector<const PosedImage*> with_mask, all;
@@ -51,7 +51,7 @@ PhotographFacts LookAtPhotographs(const PosedImages& posed) {
   }
   facts.masks = static_cast<int>(with_mask.size());
   const std::vector<const PosedImage*>& from = with_mask.empty() ? all : with_mask;
-  const std::size_t count = std::min(kPhotographs, from.size());
+  const std::size_t count = std::min(kMostExamined, from.size());
   Sums sums;
   for (std::size_t k = 0; k < count; ++k) {
     const PosedImage& image = *from[k * from.size() / count];
@@ -59,9 +59,9 @@ PhotographFacts LookAtPhotographs(const PosedImages& posed) {
     try {
       photograph = ReadImage(image.path, image.upright_by_exif);
     } catch (const InputError&) {
-      continue;  // training names it and leaves it out
+      continue;  // training reports and skips it
     }
-    ++facts.looked_at;
+    ++facts.examined;
     facts.linear = facts.linear || photograph.encoding == ColorEncoding::kLinear;
     sums.Add(photograph);
     if (image.mask.empty()) continue;
@@ -70,7 +70,7 @@ PhotographFacts LookAtPhotographs(const PosedImages& posed) {
   }
   const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0.0; };
   facts.transparent = share(sums.transparent, sums.pixels);
-  facts.beyond_white = share(sums.beyond_white, sums.pixels);
+  facts.above_white = share(sums.above_white, sums.pixels);
   facts.masked_out = share(sums.masked / 3, sums.masked_pixels);
   const double mean = share(sums.sum, sums.masked);
   facts.masked_spread = std::sqrt(std::max(0.0, share(sums.squares, sums.masked) - mean * mean));

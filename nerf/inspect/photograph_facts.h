@@ -4,19 +4,20 @@
 
 namespace nerf {
 
-// What the photographs are, whatever they show; of a few of them, spread over the capture.
+// Properties of the files of a capture, from at most 8 photographs spread over it.
 struct PhotographFacts {
-  int looked_at = 0;
+  int examined = 0;
   int photographs = 0;
   int masks = 0;             // photographs that have one
   double transparent = 0;    // share of the pixels
   double masked_out = 0;     // share of the pixels of those with masks
-  double masked_spread = 0;  // standard deviation of what is masked out, sRGB in [0,1]
-  double beyond_white = 0;   // share of linear pixels brighter than 1
+  double masked_spread = 0;  // standard deviation of the pixels that are masked out, sRGB in [0,1]
+  double above_white = 0;    // share of pixels above 1, which only linear ones can be
   bool linear = false;
 };
 
-// Throws InputError naming a mask that cannot be read or is of another size.
-PhotographFacts LookAtPhotographs(const PosedImages& posed);
+// Photographs that cannot be read are skipped. Throws InputError naming a mask that cannot be read
+// or differs in size from its photograph.
+PhotographFacts ExaminePhotographs(const PosedImages& posed);
 
 }  // namespace nerf

@@ -8,17 +8,18 @@
 
 namespace nerf {
 
-// The colours of points over the photographs that see them, taken apart: log light = of the point +
-// of the photograph + what is left over. A photograph's part is its exposure and white balance.
+// A decomposition of the colours of points in the photographs that observe them:
+//   log light = of_point + of_photograph + residual
+// The part of a photograph is its exposure and white balance.
 struct PhotographFit {
   std::vector<Eigen::Vector3f> of_point;
   std::vector<Eigen::Vector3f> of_photograph;  // their mean is 0
-  std::vector<Eigen::Vector3f> left_over;      // of each sighting
+  std::vector<Eigen::Vector3f> residuals;      // of each sighting
 };
 
-// Fits the least sum of absolute values by reweighted means, of points and photographs in turn
-// (Weiszfeld 1937; Huber 1981): what passes by, or glitters, in less than half of the sightings
-// does not bend it.
+// Minimizes the sum of absolute residuals by iteratively reweighted means, of points and
+// photographs alternately (Weiszfeld 1937; Huber 1981). Passers-by and highlights in fewer than
+// half of the sightings do not bias the fit.
 PhotographFit FitPhotographs(std::span<const Sighting> sightings, std::size_t points,
                              std::size_t photographs);
 

@@ -19,18 +19,19 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kReach = 2;            // pixels about the place, over which light is averaged
-constexpr float kDarkest = 0.004f;   // linear; below, the steps of 8 bits are steps of a tenth
-constexpr float kBrightest = 0.95f;  // of the end of the scale
-constexpr int kFewestNearby = 2;     // photographs that see a point which another should see
+constexpr int kReach = 2;            // pixels on each side, over which light is averaged
+constexpr float kDarkest = 0.004f;   // linear; below it, a step of 8 bits exceeds a tenth
+constexpr float kBrightest = 0.95f;  // linear, of display-referred photographs; above: clipped
+constexpr int kFewestNearby = 2;     // photographs that must observe a point which another misses
 
 struct Light {
   Eigen::Vector3f log_light;
   float contrast;
 };
 
-// Mean light about a place.
-std::optional<Light> LightAt(const Image& linear, bool has_end, const Vector2d& pixel) {
+// Mean light around a pixel; nullopt near the border and where it is too dark, clipped or
+// transparent.
+std::optional<Light> LightAt(const Image& linear, bool may_clip, const Vector2d& pixel) {
   const int x = static_cast<int>(std::floor(pixel.x())),
             y = static_cast<int>(std::floor(pixel.y()));
   if (x < kReach || y < kReach || x + kReach >= linear.width || y + kReach >= linear.height) {
@@ -51,18 +52,18 @@ std::optional<Light> LightAt(const Image& linear, bool has_end, const Vector2d& 
     }
   }
   const Eigen::Vector3f mean = sum / kCount;
-  if (mean.minCoeff() < kDarkest || (has_end && mean.maxCoeff() > kBrightest)) return std::nullopt;
+  if (mean.minCoeff() < kDarkest || (may_clip && mean.maxCoeff() > kBrightest)) return std::nullopt;
   const float variance = log_squares / kCount - (log_sum / kCount) * (log_sum / kCount);
   return Light{mean.array().log().matrix(), std::sqrt(std::max(0.0f, variance))};
 }
 
-// In which parts of a photograph points are known.
-class KnownParts {
+// The parts of a photograph in which sparse points are observed, as a coarse grid.
+class ObservedParts {
  public:
-  explicit KnownParts(const Camera& camera) : camera_(camera), known_(kCells * kCells, false) {}
+  explicit ObservedParts(const Camera& camera) : camera_(camera), known_(kCells * kCells, false) {}
   void Add(const Vector2d& pixel) { known_[CellOf(pixel)] = true; }
-  // Whether no point is known about a place.
-  bool IsVoid(const Vector2d& pixel) const {
+  // Whether no point is observed in the cell of a pixel and in those around it.
+  bool IsEmptyAround(const Vector2d& pixel) const {
     const int cell = CellOf(pixel), cx = cell % kCells, cy = cell / kCells;
     for (int y = std::max(0, cy - 1); y <= std::min(kCells - 1, cy + 1); ++y) {
       for (int x = std::max(0, cx - 1); x <= std::min(kCells - 1, cx + 1); ++x) {
@@ -88,8 +89,8 @@ Vector3d CentreOf(const PosedImages& posed, int photograph) {
   return posed.images[photograph].world_from_camera.translation();
 }
 
-// Where a photograph would see a point.
-std::optional<Vector2d> PlaceIn(const PosedImages& posed, int photograph, const Vector3d& x) {
+// The pixel of a photograph to which a point projects; nullopt outside the image.
+std::optional<Vector2d> ProjectInto(const PosedImages& posed, int photograph, const Vector3d& x) {
   const PosedImage& image = posed.images[photograph];
   const Camera& camera = posed.cameras[image.camera];
   const auto pixel = PixelFromPoint(camera, image.world_from_camera.inverse() * x);
@@ -98,39 +99,40 @@ std::optional<Vector2d> PlaceIn(const PosedImages& posed, int photograph, const 
   return inside ? pixel : std::nullopt;
 }
 
-bool IsSeenBy(const SparsePoint& point, int photograph) {
+bool IsObservedBy(const SparsePoint& point, int photograph) {
   return std::ranges::find(point.track, photograph, &TrackElement::image) != point.track.end();
 }
 
-// Whether the photograph that looks at a point from most nearly where this one does sees it. What
-// stands before a point and is of the scene stands there for the neighbour too (as does who stays
-// for two photographs: that is not told apart).
-bool NeighbourSees(const PosedImages& posed, int point, int photograph) {
+// Whether a point is observed by the photograph whose viewing direction is closest to this one's.
+// An occluder that belongs to the scene hides the point from that neighbour too. (So does a
+// passer-by who stays for two photographs; the two cases are not distinguished.)
+bool NeighbourObserves(const PosedImages& posed, int point, int photograph) {
   int neighbour = -1;
   double smallest = std::numeric_limits<double>::infinity();
   for (int other = 0; other < static_cast<int>(posed.images.size()); ++other) {
     if (other == photograph) continue;
     const double angle = AngleAt(posed, point, photograph, other);
-    if (angle >= smallest || !PlaceIn(posed, other, posed.points[point].x_in_world)) continue;
+    if (angle >= smallest || !ProjectInto(posed, other, posed.points[point].x_in_world)) continue;
     smallest = angle;
     neighbour = other;
   }
-  return neighbour >= 0 && IsSeenBy(posed.points[point], neighbour);
+  return neighbour >= 0 && IsObservedBy(posed.points[point], neighbour);
 }
 
-// The places in a photograph where points should be seen that are not in its tracks.
-std::vector<std::pair<int, Vector2d>> Expected(const PosedImages& posed, int photograph,
-                                               double nearby) {
-  KnownParts known(posed.cameras[posed.images[photograph].camera]);
+// The points, with their pixels, that a photograph should observe but whose tracks do not include
+// it (see TrackColors::unseen).
+std::vector<std::pair<int, Vector2d>> ExpectedPoints(const PosedImages& posed, int photograph,
+                                                     double nearby) {
+  ObservedParts observed(posed.cameras[posed.images[photograph].camera]);
   std::vector<std::pair<int, Vector2d>> candidates;
   for (int p = 0; p < static_cast<int>(posed.points.size()); ++p) {
     const SparsePoint& point = posed.points[p];
     const auto in_track = std::ranges::find(point.track, photograph, &TrackElement::image);
     if (in_track != point.track.end()) {
-      known.Add(in_track->pixel);
+      observed.Add(in_track->pixel);
       continue;
     }
-    const auto pixel = PlaceIn(posed, photograph, point.x_in_world);
+    const auto pixel = ProjectInto(posed, photograph, point.x_in_world);
     if (!pixel) continue;
     const auto near = std::ranges::count_if(point.track, [&](const TrackElement& seen) {
       return AngleAt(posed, p, photograph, seen.image) < nearby;
@@ -138,7 +140,8 @@ std::vector<std::pair<int, Vector2d>> Expected(const PosedImages& posed, int pho
     if (near >= kFewestNearby) candidates.emplace_back(p, *pixel);
   }
   std::erase_if(candidates, [&](const auto& candidate) {
-    return !known.IsVoid(candidate.second) || !NeighbourSees(posed, candidate.first, photograph);
+    return !observed.IsEmptyAround(candidate.second) ||
+           !NeighbourObserves(posed, candidate.first, photograph);
   });
   return candidates;
 }
@@ -170,24 +173,24 @@ TrackColors ReadTrackColors(const PosedImages& posed, double nearby,
     try {
       pixels = ReadImage(image.path, image.upright_by_exif);
       if (!image.mask.empty()) {
-        // What is masked out says nothing, whatever the mask means.
+        // Masked pixels are excluded, whatever the mask means.
         pixels = WithMask(pixels,
                           ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif));
       }
     } catch (const InputError&) {
-      return;  // training names it and leaves it out
+      return;  // training reports and skips it
     }
-    const bool has_end = pixels.encoding == ColorEncoding::kSrgb;
+    const bool may_clip = pixels.encoding == ColorEncoding::kSrgb;
     const Image linear = ToLinear(pixels);
-    const auto look = [&](const auto& places, std::vector<Sighting>& into) {
+    const auto add_sightings = [&](const auto& places, std::vector<Sighting>& into) {
       for (const auto& [point, pixel] : places) {
-        if (const auto light = LightAt(linear, has_end, pixel)) {
+        if (const auto light = LightAt(linear, may_clip, pixel)) {
           into.push_back({point, photograph, light->log_light, light->contrast});
         }
       }
     };
-    look(tracks[photograph], of_photograph[photograph].seen);
-    look(Expected(posed, photograph, nearby), of_photograph[photograph].unseen);
+    add_sightings(tracks[photograph], of_photograph[photograph].seen);
+    add_sightings(ExpectedPoints(posed, photograph, nearby), of_photograph[photograph].unseen);
     const std::lock_guard lock(counting);
     if (read) read(++count);
   });

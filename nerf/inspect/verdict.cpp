@@ -7,7 +7,7 @@
 
 namespace nerf {
 
-double Verdict::Sure() const {
+double Verdict::Confidence() const {
   if (!decided) return 0;
   if (threshold <= 0 || figure <= 0) return 1;
   return std::min(1.0, std::fabs(std::log2(figure / threshold)));
@@ -39,13 +39,13 @@ Verdict Undecided(const std::string& effect, const std::string& evidence) {
   return verdict;
 }
 
-Verdict Tried(Verdict verdict, double psnr_with, double psnr_without, double worth_it) {
+Verdict FromTrial(Verdict verdict, double psnr_with, double psnr_without, double required_gain) {
   verdict.figure = psnr_with - psnr_without;
-  verdict.threshold = worth_it;
-  verdict.decided = verdict.tried = true;
-  verdict.on = verdict.figure >= worth_it;
+  verdict.threshold = required_gain;
+  verdict.decided = verdict.from_trial = true;
+  verdict.on = verdict.figure >= required_gain;
   verdict.assignment = EffectAssignment(verdict.effect, verdict.on ? "{}" : "null");
-  verdict.evidence = fmt::format("{}; tried: {:.2f} dB with it, {:.2f} dB without",
+  verdict.evidence = fmt::format("{}; trial: {:.2f} dB with it, {:.2f} dB without",
                                  verdict.evidence, psnr_with, psnr_without);
   return verdict;
 }
@@ -55,14 +55,14 @@ std::string EffectAssignment(const std::string& effect, const std::string& setti
 }
 
 std::string RowOf(const Verdict& v) {
-  const std::string sure = v.decided ? fmt::format("{:.0f} %", 100 * v.Sure()) : "-";
+  const std::string confidence = v.decided ? fmt::format("{:.0f} %", 100 * v.Confidence()) : "-";
   const char* const word = !v.decided ? "undecided" : v.on ? "on" : "off";
-  return fmt::format("{:<18} {:<9} {:>5}  {}\n", v.effect, word, sure, v.evidence);
+  return fmt::format("{:<18} {:<9} {:>10}  {}\n", v.effect, word, confidence, v.evidence);
 }
 
 std::string TableOf(const std::vector<Verdict>& verdicts) {
   std::string text =
-      fmt::format("{:<18} {:<9} {:>5}  {}\n", "effect", "verdict", "sure", "evidence");
+      fmt::format("{:<18} {:<9} {:>10}  {}\n", "effect", "verdict", "confidence", "evidence");
   for (const Verdict& verdict : verdicts) text += RowOf(verdict);
   return text;
 }

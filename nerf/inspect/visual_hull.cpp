@@ -18,17 +18,18 @@ using Eigen::Vector3d;
 constexpr int kCells = 64;   // along each axis of the cube
 constexpr double kHalf = 2;  // its half width
 constexpr double kCell = 2 * kHalf / kCells;
-// A cell that fewer photographs see, behind what they show, is not known to be empty, and nothing
-// speaks for matter there.
-constexpr int kFewestSights = 2, kShareOfSights = 4;  // the second: one of so many photographs
-constexpr std::size_t kMostPhotographs = 40;          // more hardly cut off more
-constexpr double kMargin = 1.02;  // of the ball, so that nothing stands on its surface
+// A cell counts as occupied where enough photographs see it, none of them empty: 2 at least, and
+// one in 4 of those examined.
+constexpr int kFewestSights = 2, kShareOfSights = 4;
+constexpr std::size_t kMostPhotographs = 40;  // more would hardly make the hull smaller
+constexpr double kMargin = 1.02;              // so that nothing is on the surface of the ball
 
 Vector3d Corner(int x, int y, int z) {
   return Vector3d(x, y, z) * kCell - Vector3d::Constant(kHalf);
 }
 
-// How many pixels that are not transparent stand above and left of each corner: [h+1, w+1].
+// Summed-area table: the number of pixels that are not transparent above and left of each pixel
+// corner, [h+1, w+1].
 std::vector<std::int32_t> OpaqueSums(const Image& photo) {
   const std::size_t across = photo.width + 1;
   std::vector<std::int32_t> sums(across * (photo.height + 1), 0);
@@ -42,8 +43,8 @@ std::vector<std::int32_t> OpaqueSums(const Image& photo) {
   return sums;
 }
 
-// What a photograph says of a cell.
-enum class Sight { kNotSeen, kEmpty, kMaybeMatter };
+// How a photograph sees a cell.
+enum class Sight { kNotSeen, kEmpty, kMaybeOccupied };
 
 Sight SightOf(const Camera& camera, const Eigen::Isometry3d& camera_from_normalized,
               const std::vector<std::int32_t>& opaque, int cx, int cy, int cz) {
@@ -65,27 +66,27 @@ Sight SightOf(const Camera& camera, const Eigen::Isometry3d& camera_from_normali
   const std::size_t across = camera.width + 1;
   const std::int32_t count = opaque[y1 * across + x1] - opaque[y0 * across + x1] -
                              opaque[y1 * across + x0] + opaque[y0 * across + x0];
-  return count == 0 ? Sight::kEmpty : Sight::kMaybeMatter;
+  return count == 0 ? Sight::kEmpty : Sight::kMaybeOccupied;
 }
 
 }  // namespace
 
-std::optional<Ball> BallAboutHull(const PosedImages& posed,
-                                  const SceneNormalization& normalized_from_world,
-                                  const std::function<void(int)>& read) {
-  // How many photographs see each cell, none of which sees it empty; or kEmpty.
+std::optional<Ball> BoundingBallOfHull(const PosedImages& posed,
+                                       const SceneNormalization& normalized_from_world,
+                                       const std::function<void(int)>& read) {
+  // The number of photographs that see each cell, or kEmpty where one of them sees it empty.
   constexpr int kEmpty = -1;
   std::vector<int> seen(kCells * kCells * kCells, 0);
-  const std::size_t looked_at = std::min(kMostPhotographs, posed.images.size());
-  for (std::size_t k = 0; k < looked_at; ++k) {
-    const PosedImage& image = posed.images[k * posed.images.size() / looked_at];
+  const std::size_t examined = std::min(kMostPhotographs, posed.images.size());
+  for (std::size_t k = 0; k < examined; ++k) {
+    const PosedImage& image = posed.images[k * posed.images.size() / examined];
     if (read) read(static_cast<int>(k) + 1);
     const Camera& camera = posed.cameras[image.camera];
     Image photo;
     try {
       photo = ReadImage(image.path, image.upright_by_exif);
     } catch (const InputError&) {
-      continue;  // training names it and leaves it out
+      continue;  // training reports and skips it
     }
     if (photo.channels != 4 || photo.width != camera.width || photo.height != camera.height)
       continue;
@@ -100,12 +101,12 @@ std::optional<Ball> BallAboutHull(const PosedImages& posed,
           const Sight sight =
               SightOf(camera, camera_from_normalized, opaque, x, y, static_cast<int>(z));
           if (sight == Sight::kEmpty) count = kEmpty;
-          if (sight == Sight::kMaybeMatter) ++count;
+          if (sight == Sight::kMaybeOccupied) ++count;
         }
       }
     });
   }
-  const int fewest = std::max(kFewestSights, static_cast<int>(looked_at) / kShareOfSights);
+  const int fewest = std::max(kFewestSights, static_cast<int>(examined) / kShareOfSights);
   Vector3d low = Vector3d::Constant(kHalf), high = -low;
   std::vector<Vector3d> corners;
   for (int z = 0; z < kCells; ++z) {
@@ -129,7 +130,7 @@ std::optional<Ball> BallAboutHull(const PosedImages& posed,
   return ball;
 }
 
-SceneNormalization FittedTo(const Ball& ball, SceneNormalization normalized_from_world) {
+SceneNormalization NormalizedTo(const Ball& ball, SceneNormalization normalized_from_world) {
   normalized_from_world.scale /= ball.radius;
   normalized_from_world.translation =
       (normalized_from_world.translation - ball.centre) / ball.radius;

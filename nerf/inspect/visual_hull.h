@@ -10,19 +10,19 @@
 
 namespace nerf {
 
-// A small ball about what the alpha of photographs, 40 at most, leaves: the visual hull, in cells
-// of a sixteenth of the normalized unit. A cell is empty where a photograph sees all of it and
-// nothing but transparent pixels there, and where hardly a photograph sees it. Source: Laurentini
-// 1994, "The visual hull concept for silhouette-based image understanding".
-//   returns  normalized frame; nullopt where cells are left at the border of the cube [-2,2]^3:
-//            then there may be matter beyond
+// A ball around the visual hull of photographs with alpha (40 at most), computed in cells of 1/16
+// normalized unit. A cell is empty where a photograph sees it entirely and only transparent pixels
+// there, and where too few photographs see it. Source: Laurentini 1994, "The visual hull concept
+// for silhouette-based image understanding".
 //   read     called with the number of photographs read
-// A photograph that cannot be read is left out.
-std::optional<Ball> BallAboutHull(const PosedImages& posed,
-                                  const SceneNormalization& normalized_from_world,
-                                  const std::function<void(int)>& read = {});
+//   returns  normalized frame; nullopt where the hull is empty, or reaches the border of the cube
+//            [-2,2]^3 and so may extend beyond it
+// A photograph that cannot be read is skipped.
+std::optional<Ball> BoundingBallOfHull(const PosedImages& posed,
+                                       const SceneNormalization& normalized_from_world,
+                                       const std::function<void(int)>& read = {});
 
-// The frame in which a ball of the other is the unit ball.
-SceneNormalization FittedTo(const Ball& ball, SceneNormalization normalized_from_world);
+// The normalization under which a ball, given in the frame of the old one, is the unit ball.
+SceneNormalization NormalizedTo(const Ball& ball, SceneNormalization normalized_from_world);
 
 }  // namespace nerf

@@ -18,16 +18,16 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// exp of x held to [-limit, limit]. Comparisons with NaN are false, so that Min and Max, and
-// Highway's Exp, would lose it.
+// exp of x clamped to [-limit, limit]. Min, Max and Highway's Exp would turn NaN into a number, so
+// it is selected explicitly.
 HWY_INLINE V BoundedExp(V x, V limit) {
   const D d;
   const V low = hn::IfThenElse(hn::Lt(x, hn::Neg(limit)), hn::Neg(limit), x);
-  const V held = hn::IfThenElse(hn::Gt(low, limit), limit, low);
-  return hn::IfThenElse(hn::IsNaN(x), x, hn::Exp(d, held));
+  const V clamped = hn::IfThenElse(hn::Gt(low, limit), limit, low);
+  return hn::IfThenElse(hn::IsNaN(x), x, hn::Exp(d, clamped));
 }
 
-// Calls f on each vector of x, the last one filled up with zeros.
+// Applies f to each vector of x; the last one is padded with zeros.
 template <class F>
 HWY_INLINE void Transform(float* x, std::size_t count, F&& f) {
   const D d;

@@ -4,10 +4,9 @@
 
 namespace nerf::kernels {
 
-// In place, many values to a vector; within 4 units in the last place of the exact functions.
-// NaN stays NaN.
+// In place and vectorized; within 4 units in the last place of the exact functions. NaN stays NaN.
 
-// exp(x + bias), the argument held to [-limit, limit], limit <= 80.
+// exp(clamp(x + bias, -limit, limit)), limit <= 80.
 void TruncatedExp(std::span<float> x, float bias, float limit);
 
 // 1 / (1 + exp(-x))

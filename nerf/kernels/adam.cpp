@@ -16,7 +16,7 @@ namespace nerf::kernels {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The coefficients in every lane.
+// The coefficients, broadcast to all lanes.
 template <class D>
 struct Coefficients {
   using V = hn::Vec<D>;
@@ -30,8 +30,8 @@ struct Coefficients {
   V beta1, beta2, rest1, rest2, epsilon, weight_decay;
 };
 
-// One vector's step. Returns 0 in lanes where gradient and parameter are finite and NaN elsewhere:
-// x * 0 is 0 for every finite x, and one sum tells of all.
+// The step of one vector. Returns 0 in lanes where gradient and new parameter are finite and NaN
+// elsewhere: x * 0 is 0 for every finite x, so that one sum checks them all.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Step(D d, const Coefficients<D>& c, V step_size, V root_second, float* p, float* g,
                   float* m, float* v) {
@@ -66,7 +66,7 @@ bool DenseImpl(const AdamCoefficients& adam, const AdamBiasCorrection& correctio
   return run(hn::CappedTag<float, 1>(), in_vectors, count) && finite;
 }
 
-// The features of an entry lie in whole vectors of at most 4, the shortest there is.
+// Processes entries in vectors of at most 4 lanes, the shortest vector length.
 template <int kFeatures>
 bool SparseStep(const AdamCoefficients& adam, std::span<const AdamBiasCorrection> corrections,
                 float* p, float* g, float* m, float* v, std::span<std::int32_t> steps) {
@@ -84,7 +84,7 @@ bool SparseStep(const AdamCoefficients& adam, std::span<const AdamBiasCorrection
       untouched = untouched && hn::AllTrue(d, hn::Eq(hn::LoadU(d, g + f), hn::Zero(d)));
     }
     if (untouched) continue;
-    // Counted no further than to where the correction is 1.
+    // Not counted beyond the number of steps from which the correction is 1.
     steps[entry] = std::min(steps[entry] + 1, settled);
     const AdamBiasCorrection correction = corrections[steps[entry]];
     const auto step_size = hn::Set(d, adam.learning_rate * correction.first);

@@ -1,6 +1,6 @@
 #include "nerf/kernels/bfloat16_native.h"
 
-// Clang does not know how to compile a part of a file for another processor.
+// Clang does not support #pragma GCC target.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 
 #include <immintrin.h>
@@ -20,7 +20,7 @@ inline void Finish(__m512 value, float* at) {
   const __m512 zero = _mm512_setzero_ps();
   if constexpr (kEpilogue == Epilogue::kAdd) value = _mm512_add_ps(_mm512_loadu_ps(at), value);
   if constexpr (kEpilogue == Epilogue::kStoreRelu) {
-    // NaN is not less than 0 and stays.
+    // NaN is not less than 0, so it is kept.
     value = _mm512_mask_mov_ps(value, _mm512_cmp_ps_mask(value, zero, _CMP_LT_OQ), zero);
   }
   if constexpr (kEpilogue == Epilogue::kStoreMasked) {

@@ -15,14 +15,14 @@ namespace HWY_NAMESPACE {
 using DU = hn::RebindToUnsigned<D>;
 using VU = hn::Vec<DU>;
 
-// A float's bits, rounded to nearest even so that the upper half is the bfloat16.
+// The bits of a float, rounded to nearest even so that their upper half is the bfloat16.
 template <class Tag, class Vector>
 HWY_INLINE auto Rounded(Tag, Vector value) {
   const hn::RebindToUnsigned<Tag> du;
   const auto bits = hn::BitCast(du, value);
   const auto odd = hn::And(hn::ShiftRight<16>(bits), hn::Set(du, 1u));
   const auto rounded = hn::Add(bits, hn::Add(odd, hn::Set(du, 0x7fffu)));
-  // A NaN is cut, not rounded, which could make it infinite; one bit keeps it a NaN.
+  // NaN is truncated, since rounding could make it infinite; one bit is set to keep it NaN.
   const auto nan = hn::Or(bits, hn::Set(du, 0x400000u));
   return hn::IfThenElse(hn::RebindMask(du, hn::IsNaN(value)), nan, rounded);
 }
@@ -51,7 +51,7 @@ void PairRowsImpl(const float* from, std::int64_t row, std::int64_t rows, std::i
 
 void PairColumnsImpl(const float* from, std::int64_t row, std::int64_t rows, std::int64_t columns,
                      std::uint32_t* pairs) {
-  // Two of these vectors are as many floats as rows are padded to.
+  // Rows are padded to multiples of two of these vectors.
   const hn::CappedTag<float, kRowPadding / 2> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
@@ -64,7 +64,7 @@ void PairColumnsImpl(const float* from, std::int64_t row, std::int64_t rows, std
   }
 }
 
-// Two products a step, of which the even numbers stand in the lower halves.
+// Two products per step: the even elements are in the lower halves of the pairs.
 struct PairSum {
   static constexpr int kMostRows = 4;
   static constexpr int kMostVectors = 2;
@@ -95,7 +95,7 @@ struct PairSum {
   }
 };
 
-// Whether this level is one at which native products may run: tests choose lower ones.
+// Whether native products may be used at the current SIMD level; tests select lower ones.
 bool IsAvx512Impl() { return HWY_TARGET <= HWY_AVX3; }
 
 void MultiplyImpl(const Bfloat16Product& p, Epilogue epilogue) {

@@ -6,29 +6,30 @@
 
 namespace nerf::kernels {
 
-// Products of matrices rounded to bfloat16 (a float of which the upper 16 bits are left, rounded to
-// nearest even: a relative error of at most 2^-9 a factor), with sums in float. Processors that
-// multiply bfloat16 by themselves (AVX512-BF16) do twice as many in the same time; on all others
-// the same numbers come out, slower.
+// Products of matrices rounded to bfloat16 (the upper 16 bits of a float, rounded to nearest even:
+// a relative error of at most 2^-9 per factor), accumulated in float. Processors with native
+// bfloat16 products (AVX512-BF16) compute twice as many in the same time as of float; others
+// emulate them.
 //
-// Factors are stored as pairs along the sum: number 2k in the lower half of an integer, 2k + 1 in
-// the upper.
+// Factors are stored as pairs along the inner dimension: element 2k in the lower half of an
+// integer, 2k + 1 in the upper half.
 
-// Whether this processor multiplies bfloat16 by itself.
+// Whether this processor has native bfloat16 products.
 bool HasBfloat16Products();
 
-// Pairs of neighbours in a row.
-//   from  [rows, columns], columns a multiple of kRowPadding, `row` floats apart    pairs  [rows,
-//   columns / 2]
+// Packs neighbours in a row.
+//   from   [rows, columns], rows `row` floats apart, columns a multiple of kRowPadding
+//   pairs  [rows, columns / 2] written
 void PairColumns(const float* from, std::int64_t row, std::int64_t rows, std::int64_t columns,
                  std::uint32_t* pairs);
 
-// Pairs of neighbours in a column. A last odd row is paired with zeros.
-//   from  [rows, columns] likewise    pairs  [(rows + 1) / 2, columns]
+// Packs neighbours in a column; the last row of an odd number is paired with zeros.
+//   from   [rows, columns], likewise
+//   pairs  [(rows + 1) / 2, columns] written
 void PairRows(const float* from, std::int64_t row, std::int64_t rows, std::int64_t columns,
               std::uint32_t* pairs);
 
-// MatrixProduct of pairs: `inner` counts pairs, and so do the strides of a and b.
+// MatrixProduct of packed factors: `inner` and the strides of a and b count pairs.
 struct Bfloat16Product {
   const std::uint32_t* a = nullptr;
   std::int64_t a_row = 0, a_inner = 1;

@@ -6,8 +6,8 @@
 
 namespace nerf::kernels {
 
-// While it lives, the calling thread treats denormal floats as zero. Decaying moments of entries
-// that no ray touches pass through the denormals, where every operation costs a hundred cycles.
+// While it exists, the calling thread treats denormal floats as zero. The decaying moments of
+// rarely updated entries become denormal, where every operation costs a hundred cycles.
 class FlushDenormals {
  public:
 #if defined(__SSE__)

@@ -7,30 +7,30 @@
 namespace nerf::kernels {
 namespace {
 
-// The cell of a position: its 8 entries and their trilinear weights, which sum to 1. Corner k
-// stands at x + (k & 1), y + (k >> 1 & 1), z + (k >> 2).
+// The cell of a position: its 8 entries and their trilinear weights, which sum to 1. Corner k is at
+// x + (k & 1), y + (k >> 1 & 1), z + (k >> 2).
 template <class Real>
 struct Cell {
   std::uint32_t entry[8];
   Real weight[8];
-  Real along[3][2];  // of each axis, of which the weights are products
+  Real along[3][2];  // the linear weights of each axis, whose products the weights are
 };
 
-// The number of features and the kind of level are template arguments so that the loops over
-// corners and features unroll and nothing is decided inside them.
+// The number of features and the kind of level are template arguments, so that the loops over
+// corners and features are unrolled and contain no branches.
 template <class Real, bool kDense>
 inline Cell<Real> FindCell(const HashGridLevel& level, const Real* position) {
   std::uint32_t corner[3];
   Real fraction[3];
   for (int axis = 0; axis < 3; ++axis) {
     const Real scaled = position[axis] * static_cast<Real>(level.resolution);
-    // Positions are not negative, so truncation rounds down. The far face has no cell of its own.
+    // Positions are not negative, so truncation rounds down. The far face belongs to the last cell.
     const auto cell = std::min(static_cast<std::int32_t>(scaled),
                                static_cast<std::int32_t>(level.resolution) - 1);
     corner[axis] = static_cast<std::uint32_t>(cell);
     fraction[axis] = scaled - static_cast<Real>(cell);
   }
-  // Along each axis the index is a sum (dense) or an exclusive or (hashed) of one term an axis.
+  // The index is the sum (dense) or the exclusive or (hashed) of one term per axis.
   const std::uint32_t side = level.resolution + 1;
   const std::uint32_t stride_y = kDense ? side : kHashPrimeY;
   const std::uint32_t stride_z = kDense ? side * side : kHashPrimeZ;
@@ -87,8 +87,8 @@ void PositionBackwardLevel(const HashGridLevel& level, const Real* table, const 
       const Real* entry = table + static_cast<std::int64_t>(cell.entry[k]) * kFeatures;
       for (int f = 0; f < kFeatures; ++f) dL_dweight[k] += dL_dencoded[i * row + f] * entry[f];
     }
-    // Along an axis the encoding rises by the differences across the cell, interpolated over the
-    // other two.
+    // The derivative along an axis is the difference across the cell, interpolated in the other
+    // two.
     for (int axis = 0; axis < 3; ++axis) {
       const int b = (axis + 1) % 3, c = (axis + 2) % 3;
       Real sum = 0;
@@ -134,7 +134,7 @@ HashGridLayout MakeHashGridLayout(const HashGridOptions& options) {
   const std::int64_t most = std::int64_t{1} << options.log2_table_size;
   for (int l = 0; l < options.levels; ++l) {
     HashGridLevel level;
-    // The small addend keeps exact powers from falling below themselves by rounding.
+    // The small addend keeps rounding from truncating exact powers to the integer below.
     level.resolution =
         static_cast<std::uint32_t>(options.base_resolution * std::exp(growth * l) + 1e-6);
     const std::int64_t side = level.resolution + 1;
@@ -153,8 +153,8 @@ void HashEncodeForward(const HashGridLayout& layout, std::span<const Real> table
                        std::span<const Real> positions, std::span<Real> encoded, std::int64_t first,
                        std::int64_t last) {
   const int stride = layout.OutputSize();
-  // Blocks of samples, levels outermost within a block: one level's table stays in the cache while
-  // the block's rows of `encoded` do too.
+  // Blocks of samples with levels as the outer loop, so that the table of a level and the block's
+  // rows of `encoded` both stay in the cache.
   constexpr std::int64_t kBlock = 1024;
   for (std::int64_t begin = first; begin < last; begin += kBlock) {
     const std::int64_t end = std::min(last, begin + kBlock);

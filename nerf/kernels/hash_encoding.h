@@ -29,8 +29,9 @@ struct HashGridOptions {
   }
 };
 
-// One level: a lattice of (resolution + 1)^3 vertices over the unit cube. While they fit, each
-// vertex has its own entry ("dense"); beyond that entries are shared by a spatial hash.
+// One level: a lattice of (resolution + 1)^3 vertices over the unit cube. Where they fit into the
+// table, each vertex has its own entry ("dense"); otherwise vertices share entries by a spatial
+// hash.
 struct HashGridLevel {
   std::uint32_t resolution = 0;
   std::uint32_t size = 0;   // entries
@@ -48,24 +49,27 @@ struct HashGridLayout {
 
 HashGridLayout MakeHashGridLayout(const HashGridOptions& options);
 
-// The factors of the spatial hash: the entry of vertex (x, y, z) is x ^ (y kHashPrimeY) ^
-// (z kHashPrimeZ), the first axis having the factor 1; where it is dense, x + side (y + side z).
+// The factors of the spatial hash. The entry of vertex (x, y, z) is
+//   x ^ (y kHashPrimeY) ^ (z kHashPrimeZ) modulo the size of a hashed level,
+//   x + side (y + side z), side = resolution + 1, of a dense level.
 // Source: Teschner et al. 2003.
 inline constexpr std::uint32_t kHashPrimeY = 2654435761u;
 inline constexpr std::uint32_t kHashPrimeZ = 805459861u;
 
-// Trilinear interpolation of the entries at the 8 corners of the cell that holds each position.
+// Trilinear interpolation of the entries at the 8 corners of the cell that contains each position.
 //   table      [entries, features]
 //   positions  [N,3] in [0,1]; the far faces belong to the last cell
 //   encoded    [N, levels * features], level after level
-// Samples [first, last) only, so that a caller can deal samples out to threads.
+// Computes samples [first, last) only, so that a caller can distribute samples over threads.
+// Differentiable in the table and the positions, by the two backward passes below.
 template <class Real>
 void HashEncodeForward(const HashGridLayout& layout, std::span<const Real> table,
                        std::span<const Real> positions, std::span<Real> encoded, std::int64_t first,
                        std::int64_t last);
 
-// Adds dL/dtable of all N samples for the levels [first_level, last_level) only: a level's entries
-// belong to one thread, so that the scatter needs no atomics and repeats bit for bit.
+// The backward pass of HashEncodeForward in the table: adds dL/dtable of all N samples for the
+// levels [first_level, last_level) only. One thread owns the entries of a level, so that the
+// scatter needs no atomics and is deterministic.
 //   dL_dencoded  [N, levels * features]
 //   dL_dtable    [entries, features], added to
 template <class Real>
@@ -73,11 +77,11 @@ void HashEncodeBackward(const HashGridLayout& layout, std::span<const Real> posi
                         std::span<const Real> dL_dencoded, std::span<Real> dL_dtable,
                         int first_level, int last_level);
 
-// How the encoding changes with the position: adds dL/dposition of samples [first, last). Across
-// the faces of cells the encoding has a kink; there it is the slope of the cell that holds the
-// position.
-//   dL_dencoded   rows of `row` numbers, row >= layout.OutputSize()
-//   level_weight  [levels] by which what a level gives was multiplied; where 0 it is not read
+// The backward pass of HashEncodeForward in the positions: adds dL/dposition of samples
+// [first, last). The encoding is not differentiable across the faces of cells; on a face the
+// gradient is that of the cell that contains the position.
+//   dL_dencoded   rows of `row` values, row >= layout.OutputSize()
+//   level_weight  [levels] factor of each level's features; a level of weight 0 is not read
 //   dL_dposition  [N,3], added to
 template <class Real>
 void HashEncodePositionBackward(const HashGridLayout& layout, std::span<const Real> table,

@@ -13,8 +13,8 @@ namespace nerf::kernels {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Samples whose cells are found at once: their entries and weights stay in the first-level cache,
-// and the loads of one sample's entries need not wait for the arithmetic of the next.
+// Samples whose cells are computed at once. Their entries and weights stay in the first-level
+// cache, and the loads of one sample's entries overlap with the arithmetic of the next.
 constexpr std::int64_t kBlock = 64;
 
 struct Cells {
@@ -22,7 +22,7 @@ struct Cells {
   alignas(64) float weight[8][kBlock];
 };
 
-// Finds the cells of `count` samples, at most kBlock. The arrays are filled in whole vectors.
+// Computes the cells of `count` samples, at most kBlock. Writes whole vectors.
 template <bool kDense>
 HWY_INLINE void FindCells(const HashGridLevel& level, const float* positions, std::int64_t count,
                           Cells& cells) {
@@ -54,7 +54,8 @@ HWY_INLINE void FindCells(const HashGridLevel& level, const float* positions, st
     VF w[3][2];
     for (int axis = 0; axis < 3; ++axis) {
       scaled[axis] = hn::Mul(scaled[axis], resolution);
-      // Positions are not negative, so truncation rounds down. The far face has no cell of its own.
+      // Positions are not negative, so truncation rounds down. The far face belongs to the last
+      // cell.
       const auto cell = hn::Min(hn::ConvertTo(di, scaled[axis]), last_cell);
       corner[axis] = hn::BitCast(du, cell);
       w[axis][1] = hn::Sub(scaled[axis], hn::ConvertTo(d, cell));
@@ -80,7 +81,7 @@ HWY_INLINE void FindCells(const HashGridLevel& level, const float* positions, st
               : FindCells<false>(level, positions, count, cells);
 }
 
-// The features of an entry, as whole vectors of at most 4, the shortest vector there is.
+// The features of an entry as vectors of at most 4 lanes, the shortest vector length.
 template <int kFeatures>
 struct Entry {
   static constexpr int kMostLanes = HWY_TARGET == HWY_SCALAR ? 1 : 4;
@@ -136,7 +137,8 @@ void EncodeImpl(const HashGridLayout& layout, const float* table, const float* p
                             : features == 2 ? EncodeLevel<2>
                             : features == 4 ? EncodeLevel<4>
                                             : EncodeLevel<8>;
-  // Levels outermost: one level's table stays in the cache while the tile's rows do too.
+  // Levels are the outer loop, so that the table of a level and the rows of the tile stay in the
+  // cache.
   for (std::size_t l = 0; l < layout.levels.size(); ++l) {
     float* const out = encoded + l * features;
     if (level_weight[l] == 0) {

@@ -12,7 +12,7 @@ double HistogramBoundLoss(std::span<const Real> edges, std::span<const Real> wei
   constexpr double kEpsilon = 1e-7;
   std::fill(dL_dcoarse.begin(), dL_dcoarse.end(), Real(0));
   double loss = 0;
-  std::size_t first = 0;  // first coarse interval that ends behind the front of the fine one
+  std::size_t first = 0;  // first coarse interval that ends behind the beginning of the fine one
   for (std::size_t i = 0; i < weights.size(); ++i) {
     while (first + 1 < coarse_weights.size() && coarse_edges[first + 1] <= edges[i]) ++first;
     double bound = 0;
@@ -33,20 +33,20 @@ double HistogramBoundLoss(std::span<const Real> edges, std::span<const Real> wei
 template <class Real>
 double DistortionLoss(std::span<const Real> edges, std::span<const Real> weights,
                       std::span<Real> dL_dweight) {
-  const auto middle = [&](std::size_t i) {
+  const auto centre = [&](std::size_t i) {
     return 0.5 * (static_cast<double>(edges[i]) + static_cast<double>(edges[i + 1]));
   };
-  // With W and M the sums of w_j and w_j m_j over j < i, what stands before i contributes
-  // w_i (m_i W - M); what stands behind likewise, from the other end.
+  // With W and M the sums of w_j and w_j m_j over j < i, the intervals before i contribute
+  // w_i (m_i W - M), and those behind it likewise from the other end: O(N) for the double sum.
   double all_w = 0, all_m = 0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     all_w += static_cast<double>(weights[i]);
-    all_m += static_cast<double>(weights[i]) * middle(i);
+    all_m += static_cast<double>(weights[i]) * centre(i);
   }
   double loss = 0, before_w = 0, before_m = 0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const auto w = static_cast<double>(weights[i]);
-    const double m = middle(i);
+    const double m = centre(i);
     const double length = static_cast<double>(edges[i + 1]) - static_cast<double>(edges[i]);
     const double behind_w = all_w - before_w - w, behind_m = all_m - before_m - w * m;
     const double spread = (m * before_w - before_m) + (behind_m - m * behind_w);

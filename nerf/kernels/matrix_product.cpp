@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace nerf::kernels {
 namespace HWY_NAMESPACE {
 
-// With AVX-512's 32 registers a block of 6 rows and 4 vectors stays in them while the sum runs,
-// with 16 registers one of 6 and 2.
+// The sums of a block stay in registers: 6 rows of 4 vectors with the 32 registers of AVX-512, 6
+// rows of 2 vectors with 16 registers.
 struct FloatSum {
   static constexpr int kMostRows = 6;
   static constexpr int kMostVectors = HWY_TARGET <= HWY_AVX3 ? 4 : 2;

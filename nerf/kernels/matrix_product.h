@@ -4,27 +4,27 @@
 
 namespace nerf::kernels {
 
-// Widths of rows are rounded up to this many floats, the widest vector there is, so that no product
-// has a ragged end. What stands in the padding must be finite; zeros keep it without effect.
+// Rows are padded to multiples of this many floats, the longest vector, so that products need no
+// remainder loop. The padding must be finite; zeros have no effect.
 inline constexpr int kRowPadding = 16;
 constexpr int PaddedWidth(int width) {
   return (width + kRowPadding - 1) / kRowPadding * kRowPadding;
 }
 
-// What happens to a sum before it is written.
+// How a sum is written to C.
 enum class Epilogue {
   kStore,       // C = A B
   kAdd,         // C += A B
   kStoreRelu,   // C = max(A B, 0)
-  kStoreMasked  // C = A B where the old C was above 0, else 0: the way back through a ReLU
+  kStoreMasked  // C = A B where the old C was above 0, else 0: the backward pass of a ReLU
 };
 
-// A small product C [rows, columns] = A [rows, inner] B [inner, columns], one thread.
-//   a  element (r, k) at a[r * a_row + k * a_inner]: A may stand transposed
+// A small product C [rows, columns] = A [rows, inner] B [inner, columns], in one thread.
+//   a  element (r, k) at a[r * a_row + k * a_inner], so that A may be transposed
 //   b  element (k, c) at b[k * b_row + c]
 //   c  element (r, c) at c[r * c_row + c]
-// columns is a multiple of kRowPadding. The sum over k runs in one order, whatever the vector
-// length, so that results differ between SIMD levels by the rounding of fused products alone.
+// columns is a multiple of kRowPadding. The order of the sum over k does not depend on the vector
+// length, so that results differ between SIMD levels only by the rounding of fused products.
 struct MatrixProduct {
   const float* a = nullptr;
   std::int64_t a_row = 0, a_inner = 1;

@@ -103,7 +103,7 @@ void TileMlp::BackwardLayer(int l, std::int64_t samples, std::span<float* const>
 
 namespace {
 
-// Factors of the product at work, one buffer a thread.
+// The packed factors of the current product, one buffer per thread.
 std::uint32_t* Pairs(std::vector<std::uint32_t>& storage, std::int64_t size) {
   if (static_cast<std::int64_t>(storage.size()) < size) storage.resize(size);
   return storage.data();
@@ -151,7 +151,7 @@ void TileMlp::BackwardLayerInPairs(int l, std::int64_t samples, std::span<float*
   Multiply(weight, Epilogue::kAdd);
 
   Bfloat16Product input;
-  PairColumns(rows[l + 1], outputs, samples, outputs, dL_dout);  // no longer than before
+  PairColumns(rows[l + 1], outputs, samples, outputs, dL_dout);  // smaller than before
   input.a = dL_dout;
   input.a_row = outputs / 2;
   input.b = &in_from_out_pairs_[offset_[l] / 2];

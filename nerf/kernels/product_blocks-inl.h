@@ -1,5 +1,5 @@
-// The blocks that small products are cut into, for matrix_product.cpp and bfloat16_product.cpp:
-// once for each set of vector instructions, as Highway includes both files.
+// The division of small products into blocks, for matrix_product.cpp and bfloat16_product.cpp.
+// Compiled once for each SIMD level, as Highway includes both files.
 #if defined(NERF_KERNELS_PRODUCT_BLOCKS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef NERF_KERNELS_PRODUCT_BLOCKS_INL_H_
 #undef NERF_KERNELS_PRODUCT_BLOCKS_INL_H_
@@ -23,7 +23,7 @@ template <Epilogue kEpilogue>
 HWY_INLINE void Finish(V value, float* at) {
   const D d;
   if constexpr (kEpilogue == Epilogue::kAdd) value = hn::Add(hn::LoadU(d, at), value);
-  // Not Max, which on x86 turns NaN into 0 and would hide it.
+  // Not Max, which on x86 turns NaN into 0.
   if constexpr (kEpilogue == Epilogue::kStoreRelu) {
     value = hn::IfThenZeroElse(hn::Lt(value, hn::Zero(d)), value);
   }
@@ -33,7 +33,8 @@ HWY_INLINE void Finish(V value, float* at) {
   hn::StoreU(value, d, at);
 }
 
-// `Sum` says how large a block of C stays in registers (kMostRows, kMostVectors), and adds up one:
+// `Sum` defines the largest block of C that stays in registers (kMostRows, kMostVectors) and
+// computes the sums of a block:
 //   template <int kRows, int kVectors>
 //   static void Of(const Product& p, int64 row, int64 column, V (&sum)[kRows][kVectors]);
 template <class Sum, int kRows, int kVectors, Epilogue kEpilogue, class Product>
@@ -52,7 +53,7 @@ HWY_INLINE void Block(const Product& p, std::int64_t row, std::int64_t column) {
   }
 }
 
-// The rows that do not fill a block: exactly as many as there are.
+// The remaining rows, fewer than a block has.
 template <class Sum, int kRows, int kVectors, Epilogue kEpilogue, class Product>
 HWY_INLINE void LastRows(const Product& p, std::int64_t row, std::int64_t column) {
   if constexpr (kRows > 0) {

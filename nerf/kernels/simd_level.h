@@ -6,16 +6,17 @@
 
 namespace nerf::kernels {
 
-// A set of vector instructions that the kernels were compiled for and this processor has.
+// A set of vector instructions that this processor has and for which the kernels were compiled.
 struct SimdLevel {
   std::int64_t target = 0;  // Highway's number
   std::string name;         // "AVX3", "AVX2", "SSE4", ...
 };
 
-// Best first; what the kernels use by themselves is the first.
+// Best first; the kernels use the first one by default.
 std::vector<SimdLevel> SimdLevels();
 
-// While it lives, all threads use that level. One at a time, and not while kernels run.
+// While it exists, all threads use this level. Only one may exist, and it must not be created or
+// destroyed while kernels run.
 class WithSimdLevel {
  public:
   explicit WithSimdLevel(const SimdLevel& level);

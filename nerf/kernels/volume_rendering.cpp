@@ -6,8 +6,8 @@
 namespace nerf::kernels {
 namespace {
 
-// Optical depth of one interval. In double, so that no finite product of floats overflows, and
-// inf * 0 is the empty interval it stands for.
+// Optical depth of one interval. In double, so that no product of finite floats overflows. Infinite
+// density over length 0 is an empty interval.
 template <class Real>
 double OpticalDepth(Real sigma, Real dt) {
   return dt == Real(0) ? 0.0 : static_cast<double>(sigma) * static_cast<double>(dt);
@@ -59,7 +59,7 @@ void CompositeBackward(const RaySegments<Real>& in, const CompositedGradients<Re
     }
 
     const double T_end = std::exp(-tau[count]);
-    double suffix = 0;  // what the light from behind the sample is worth, seen from the camera
+    double suffix = 0;  // sum_{j>k} w_j v_j + T_N v_b
     for (int c = 0; c < 3; ++c) {
       suffix += T_end * g[c] * static_cast<double>(in.background[3 * ray + c]);
       out.dL_dbackground[3 * ray + c] = static_cast<Real>(T_end * g[c]);

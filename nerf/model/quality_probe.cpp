@@ -27,7 +27,7 @@ QualityProbe::QualityProbe(const ModelSnapshot& model, const ViewRequest& view) 
     // In the middle of equal parts of the picture.
     const int middle = camera.height * (2 * i + 1) / (2 * count);
     strips_.push_back(
-        {RowsOf(camera, std::max(0, middle - rows / 2), rows), view.world_from_camera});
+        {CropRows(camera, std::max(0, middle - rows / 2), rows), view.world_from_camera});
   }
   strips_in_a_frame_ = static_cast<double>(camera.height) / (count * rows);
   exact_ = Render(1, exact_seconds_);

@@ -115,7 +115,7 @@ class Trials {
 }  // namespace
 
 bool IsOpen(const Verdict& verdict, const std::set<std::string>& requested) {
-  if (verdict.IsSure() || requested.contains(verdict.effect)) return false;
+  if (verdict.IsConclusive() || requested.contains(verdict.effect)) return false;
   const EffectDescriptor* const effect = FindEffect(verdict.effect);
   return verdict.decided || (effect != nullptr && effect->tried_without_evidence);
 }
@@ -141,7 +141,7 @@ EffectTrials RunEffectTrials(const Config& config, const SceneFacts& scene,
       continue;
     }
     // What is configured stays unless the other is clearly better.
-    verdict = Tried(verdict, with, without, was_on ? -kGain : kGain);
+    verdict = FromTrial(verdict, with, without, was_on ? -kGain : kGain);
     if (verdict.on != was_on) trials.TakeOther(*effect);
     result.assignments.push_back(verdict.assignment);
     listener(VerdictReached{verdict});

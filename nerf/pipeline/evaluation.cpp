@@ -94,7 +94,7 @@ Evaluation Evaluate(const ModelSnapshot& model, const PosedImages& posed,
     const double seconds = watch.Seconds();
     evaluation.cost.Add(view);
     if (evaluation.exposure_fitted) FitExposure(truth, background, view);
-    const double of_ignored = IgnoreMasked(photograph.whole, truth, view.rgb);
+    const double of_ignored = IgnoreMasked(photograph.valid_pixels, truth, view.rgb);
     const ViewScore& score = evaluation.scores.emplace_back(
         image->name, Psnr(truth, view.rgb) - of_ignored, Ssim(truth, view.rgb), seconds);
     if (listener) listener({image, &truth, &view.rgb, &score});

@@ -20,21 +20,22 @@ View ColumnsOf(const View& view, int left, int right) {
   };
   View part;
   part.name = view.name;
-  part.camera = ColumnsOf(view.camera, left, right - left);
+  part.camera = CropColumns(view.camera, left, right - left);
   part.normalized_from_camera = view.normalized_from_camera;
   part.lens = view.lens;
   part.seed = view.seed;
-  const auto share = static_cast<std::size_t>(view.Held() * width / all + 1);
-  part.whole.reserve(share);
+  const auto share = static_cast<std::size_t>(view.StoredCount() * width / all + 1);
+  part.valid_pixels.reserve(share);
   part.rgba.reserve(4 * share);
-  for (std::int64_t k = 0; k < view.Held(); ++k) {
-    const std::int64_t pixel = place(view.PixelOf(k));
+  for (std::int64_t k = 0; k < view.StoredCount(); ++k) {
+    const std::int64_t pixel = place(view.PixelIndex(k));
     if (pixel < 0) continue;
-    part.whole.push_back(static_cast<std::uint32_t>(pixel));
+    part.valid_pixels.push_back(static_cast<std::uint32_t>(pixel));
     part.rgba.insert(part.rgba.end(), &view.rgba[4 * k], &view.rgba[4 * k] + 4);
   }
-  for (const SeenPoint& point : view.points) {
-    if (place(point.pixel) >= 0) part.points.push_back({place(point.pixel), point.distance});
+  for (const DepthObservation& point : view.depth_observations) {
+    if (place(point.pixel) >= 0)
+      part.depth_observations.push_back({place(point.pixel), point.distance});
   }
   return part;
 }
@@ -47,7 +48,7 @@ HeldOutHalves::HeldOutHalves(Dataset& data) : data_(data) {
     View& view = data.train[place];
     const int width = view.camera.width;
     View left = ColumnsOf(view, 0, width / 2), right = ColumnsOf(view, width / 2, width);
-    if (left.Held() == 0 || right.Held() == 0) continue;
+    if (left.StoredCount() == 0 || right.StoredCount() == 0) continue;
     data.validation.push_back(std::move(right));
     wholes_.emplace_back(place, std::exchange(view, std::move(left)));
   }

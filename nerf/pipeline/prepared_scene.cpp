@@ -159,11 +159,11 @@ Dataset LoadPhotographs(const PosedImages& posed, const Config& config,
     listener(
         Warning{fmt::format("{} images could not be read and are left out", data.skipped.size())});
   }
-  if (data.made_linear > 0) {
+  if (data.linearized_photographs > 0) {
     listener(Warning{fmt::format(
         "{} of the photographs are display-referred (JPEG, PNG) among linear ones (EXR, HDR); they "
         "are converted to linear radiance, and their clipped pixels are ignored",
-        data.made_linear)});
+        data.linearized_photographs)});
   }
   if (config.effects.depth_supervision) AddKeptPoints(posed, normalized_from_world, run, data);
   return data;

@@ -14,7 +14,7 @@ Plane OpenCV(double u, double v, double k1, double k2, double p1, double p2) {
           v + v * radial + 2 * p2 * u * v + p1 * (r2 + 2 * v * v)};
 }
 
-// The ideal plane point moved to where an equidistant fisheye sees it.
+// The image of a point of the ideal plane under an equidistant fisheye.
 Plane Equidistant(double u, double v) {
   const double r = std::sqrt(u * u + v * v);
   if (r == 0) return {0, 0};

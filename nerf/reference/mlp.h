@@ -4,7 +4,7 @@
 
 namespace nerf::reference {
 
-// A layer: [outputs, inputs].
+// Per layer: [outputs, inputs].
 using Weights = std::vector<std::vector<double>>;
 
 // A fully connected network with ReLU between its layers and no biases, in plain loops.

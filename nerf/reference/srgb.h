@@ -2,7 +2,7 @@
 
 namespace nerf::reference {
 
-// IEC 61966-2-1 on [0,1], for values of any sign and size as srgb.h extends it.
+// IEC 61966-2-1, extended beyond [0,1] as in nerf/image/srgb.h.
 long double SrgbFromLinear(long double linear);
 
 }  // namespace nerf::reference

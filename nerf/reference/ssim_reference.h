@@ -4,8 +4,8 @@
 
 namespace nerf::reference {
 
-// Wang et al. 2004 as it is written: for every window its 121 weights, means and covariances, the
-// latter around the mean. Takes the pixels as they are: no rounding, no alpha.
+// Wang et al. 2004: for each window the means and the covariances around them, from its 121
+// weights. Neither rounds pixels nor handles alpha.
 double Ssim(const Image& a, const Image& b);
 
 }  // namespace nerf::reference

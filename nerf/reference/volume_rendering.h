@@ -5,7 +5,7 @@
 
 namespace nerf::reference {
 
-// One ray, composited the slow and obvious way in long double.
+// One ray, composited directly by the definition in long double.
 struct Ray {
   std::vector<long double> sigma, dt, t;
   std::vector<long double> radiance;  // [S,3]
@@ -18,9 +18,9 @@ struct Pixel {
   long double depth = 0;
 };
 
-// w_i = T_i (1 - e^{-x_i}), each T_i from its own sum over the samples in front.
+// w_i = T_i (1 - e^{-x_i}), with each T_i from its own sum over the samples in front.
 long double Weight(const Ray& ray, std::size_t i);
-long double TransmittanceBefore(const Ray& ray, std::size_t i);  // i = S: behind all
+long double TransmittanceBefore(const Ray& ray, std::size_t i);  // i = S: behind all samples
 Pixel Composite(const Ray& ray);
 
 // dL/dsigma_i for L = g_rgb . rgb + g_opacity opacity + g_depth depth, by the explicit O(S^2) sum

@@ -103,10 +103,11 @@ ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
   out.edges.resize(count * (fine + 1));
   ParallelFor(count, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
-      CutByWeights(std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1),
-                   Span<const float>(weights).subspan(r * coarse, coarse),
-                   static_cast<float>(exponent), static_cast<float>(options.padding),
-                   rays.jitter[r], std::span(out.edges).subspan(r * (fine + 1), fine + 1));
+      ResampleAnnealed(std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1),
+                       Span<const float>(weights).subspan(r * coarse, coarse),
+                       static_cast<float>(exponent),
+                       static_cast<float>(options.padding), rays.jitter[r],
+                       std::span(out.edges).subspan(r * (fine + 1), fine + 1));
     }
   });
   out.samples = PackIntervals(rays, march, out.edges, fine);
@@ -140,7 +141,7 @@ torch::Tensor ProposalLoss(const ProposedSamples& proposed, const PackedSamples&
                                             std::span<Real> gradient) {
       auto places = EdgesOfRay<Real>(proposed.edges, r, fine + 1);
       for (Real& place : places)
-        place = static_cast<Real>(RayPlace(static_cast<float>(place), march));
+        place = static_cast<Real>(NormalizedDistance(static_cast<float>(place), march));
       return kernels::DistortionLoss<Real>(std::span(places).first(of_ray.size() + 1), of_ray,
                                            gradient);
     };

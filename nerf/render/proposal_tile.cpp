@@ -46,9 +46,9 @@ void TileProposal::Cut(const RayBatch& rays, std::int64_t first, std::int64_t la
                                  count);
 
   for (std::int64_t k = 0; k < count; ++k) {
-    CutByWeights(coarse_edges(k), std::span(tile.weights).subspan(k * coarse, coarse), exponent_,
-                 static_cast<float>(options_.padding), rays.jitter[first + k],
-                 std::span(tile.edges).subspan(k * (fine + 1), fine + 1));
+    ResampleAnnealed(coarse_edges(k), std::span(tile.weights).subspan(k * coarse, coarse), exponent_,
+                     static_cast<float>(options_.padding), rays.jitter[first + k],
+                     std::span(tile.edges).subspan(k * (fine + 1), fine + 1));
   }
 }
 
@@ -101,7 +101,7 @@ void TileProposal::Backward(std::int64_t rays, std::span<const std::int64_t> ray
     const std::int64_t begin = ray_begin[k], size = ray_begin[k + 1] - begin;
     tile.places.resize(size + 1);
     for (std::int64_t i = 0; i <= size; ++i) {
-      tile.places[i] = RayPlace(tile.edges[k * (fine + 1) + i], march_);
+      tile.places[i] = NormalizedDistance(tile.edges[k * (fine + 1) + i], march_);
     }
     kernels::DistortionLoss<float>(tile.places, std::span(weights).subspan(begin, size),
                                    std::span(dL_dweights).subspan(begin, size));

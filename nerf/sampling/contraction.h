@@ -6,8 +6,8 @@
 
 namespace nerf {
 
-// Maps all of space into the ball of radius 2: the identity inside the unit ball, and
-// (2 - 1/|x|) x/|x| outside. Continuous with its first derivative.
+// Contracts space into the ball of radius 2: the identity inside the unit ball, (2 - 1/|x|) x/|x|
+// outside. Continuously differentiable.
 // Source: Barron et al. 2022, "Mip-NeRF 360", equation 10.
 inline Eigen::Vector3f Contract(const Eigen::Vector3f& x) {
   const float r = x.stableNorm();
@@ -15,15 +15,15 @@ inline Eigen::Vector3f Contract(const Eigen::Vector3f& x) {
   return ((2.0f - 1.0f / r) / r) * x;
 }
 
-// The point that contracts to y, |y| < 2.
+// The inverse of Contract, |y| < 2.
 inline Eigen::Vector3f Uncontract(const Eigen::Vector3f& y) {
   const float q = y.stableNorm();
   if (q <= 1.0f) return y;
   return y / (q * (2.0f - q));
 }
 
-// How fast the contracted point moves when x moves along the unit vector d: |J(x) d|.
-// Radially the contraction shrinks lengths by 1/r^2, tangentially by (2 - 1/r)/r.
+// The speed of the contracted point as x moves along the unit vector d: |J(x) d|, with J the
+// Jacobian of Contract. It scales radial lengths by 1/r^2 and tangential ones by (2 - 1/r)/r.
 inline float ContractedSpeed(const Eigen::Vector3f& x, const Eigen::Vector3f& d) {
   const float r = x.stableNorm();
   if (r <= 1.0f) return 1.0f;
@@ -34,7 +34,7 @@ inline float ContractedSpeed(const Eigen::Vector3f& x, const Eigen::Vector3f& d)
   return std::sqrt(along * along + across * across * tangential2);
 }
 
-// The cube [-2,2]^3 that holds contracted space, as the unit cube of encodings and grids.
+// The cube [-2,2]^3 around contracted space, mapped to the unit cube of encodings and grids.
 inline Eigen::Vector3f UnitCubeFromContracted(const Eigen::Vector3f& y) {
   return (0.25f * y).array() + 0.5f;
 }

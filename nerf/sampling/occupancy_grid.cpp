@@ -10,11 +10,11 @@
 namespace nerf {
 namespace {
 
-// Streams of random numbers, apart from those of rays and pixels.
+// Random streams, distinct from those of rays and pixels.
 constexpr std::uint64_t kPickStream = 0x6f63635f7069636bull;
 constexpr std::uint64_t kOffsetStream = 0x6f63635f6f666673ull;
 
-constexpr float kNeverSeen = -1.0f;
+constexpr float kNeverVisible = -1.0f;
 
 constexpr int kBlock = 4;
 constexpr std::uint8_t kFarthestBlock = 255;
@@ -27,7 +27,7 @@ OccupancyGrid::OccupancyGrid(const OccupancyOptions& options, float step_length)
   density_.assign(n * n * n, 0.0f);
   occupied_.assign(n * n * n, 1);
   blocks_ = (options.resolution + kBlock - 1) / kBlock;
-  Decided();
+  UpdateBlockDistances();
 }
 
 float OccupancyGrid::FreeRadius(const Eigen::Vector3f& position) const {
@@ -37,13 +37,13 @@ float OccupancyGrid::FreeRadius(const Eigen::Vector3f& position) const {
           .min(blocks_ - 1)
           .max(0);
   const int distance = block_distance_[(block[2] * blocks_ + block[1]) * blocks_ + block[0]];
-  // From anywhere in its block to the nearest face of a block that many blocks away.
+  // The least distance from any position in the block to a block that many blocks away.
   return static_cast<float>(std::max(0, distance - 1) * kBlock) * 4.0f /
          static_cast<float>(options_.resolution);
 }
 
-// The chessboard distance of blocks in two sweeps. Source: Rosenfeld and Pfaltz 1968.
-void OccupancyGrid::Decided() {
+// The chessboard distance transform of blocks in two passes. Source: Rosenfeld and Pfaltz 1968.
+void OccupancyGrid::UpdateBlockDistances() {
   const int n = options_.resolution, b = blocks_;
   block_distance_.assign(static_cast<std::size_t>(b) * b * b, kFarthestBlock);
   const auto at = [&](int x, int y, int z) -> std::uint8_t& {
@@ -57,7 +57,7 @@ void OccupancyGrid::Decided() {
       }
     }
   }
-  // The 13 neighbours that come before a block, and as their mirror those behind.
+  // The 13 neighbours that precede a block in scan order (sign 1) or follow it (sign -1).
   const auto relax = [&](int x, int y, int z, int sign) {
     int least = at(x, y, z);
     for (int k = 0; k < 13; ++k) {
@@ -96,20 +96,20 @@ void OccupancyGrid::KeepVisible(const std::function<bool(const Eigen::Vector3f&,
               [&](std::int64_t begin, std::int64_t end) {
                 for (std::int64_t cell = begin; cell < end; ++cell) {
                   const Eigen::Vector3f centre = CellCorner(cell).array() + 0.5f * side;
-                  // Corners of the cube beyond the ball of contracted space hold nothing at all.
+                  // The corners of the cube are outside the ball of contracted space.
                   const bool in_ball = ContractedFromUnitCube(centre).norm() < 2.0f;
-                  density_[cell] = in_ball && visible(centre, half_diagonal) ? 0.0f : kNeverSeen;
+                  density_[cell] = in_ball && visible(centre, half_diagonal) ? 0.0f : kNeverVisible;
                   occupied_[cell] = density_[cell] == 0.0f;
                 }
               });
-  Decided();
+  UpdateBlockDistances();
 }
 
 void OccupancyGrid::Update(std::int64_t step, std::uint64_t seed, const DensityFunction& density) {
   const auto cells = static_cast<std::int64_t>(density_.size());
   std::vector<std::int64_t> picked;
   for (std::int64_t cell = 0; cell < cells; ++cell) {
-    if (density_[cell] == kNeverSeen) continue;
+    if (density_[cell] == kNeverVisible) continue;
     const std::uint64_t draw = RandomBits(seed, kPickStream + step, cell) & 7;
     const bool often = occupied_[cell] || step < options_.warmup_steps;
     if (draw < (often ? 2 : 1)) picked.push_back(cell);
@@ -128,29 +128,29 @@ void OccupancyGrid::Update(std::int64_t step, std::uint64_t seed, const DensityF
   const auto decay = static_cast<float>(options_.decay);
 
   for (std::size_t k = 0; k < picked.size(); ++k) {
-    float& remembered = density_[picked[k]];
-    remembered = std::max(decay * remembered, fresh[k]);
+    float& stored = density_[picked[k]];
+    stored = std::max(decay * stored, fresh[k]);
   }
   Refresh();
 }
 
 void OccupancyGrid::Refresh() {
-  // A cell counts once a step through it would be opaque to `threshold`; while the whole scene is
-  // thinner than that, what is denser than the mean counts, so that training always has samples.
+  // A cell is occupied where a step through it has an opacity of `threshold`. While the whole scene
+  // is thinner than that, cells above the mean density are, so that training always has samples.
   double sum = 0;
   std::int64_t seen = 0;
-  for (const float remembered : density_) {
-    if (remembered == kNeverSeen) continue;
-    sum += std::min(remembered, 1e6f);
+  for (const float stored : density_) {
+    if (stored == kNeverVisible) continue;
+    sum += std::min(stored, 1e6f);
     ++seen;
   }
   const auto mean = static_cast<float>(seen > 0 ? sum / static_cast<double>(seen) : 0.0);
   const auto opaque = static_cast<float>(-std::log1p(-options_.threshold) / step_length_);
   const float bound = std::min(mean, opaque);
   for (std::size_t cell = 0; cell < density_.size(); ++cell) {
-    occupied_[cell] = density_[cell] != kNeverSeen && density_[cell] >= bound;
+    occupied_[cell] = density_[cell] != kNeverVisible && density_[cell] >= bound;
   }
-  Decided();
+  UpdateBlockDistances();
 }
 
 double OccupancyGrid::OccupiedFraction() const {

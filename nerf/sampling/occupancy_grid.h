@@ -34,46 +34,47 @@ struct OccupancyOptions {
   }
 };
 
-// Remembers where contracted space may hold matter, so that rays step over the rest.
-// Source: Mueller et al. 2022, appendix E.2 ("occupancy grids"): the maximum of the decayed memory
-// and a fresh density at a random point of the cell.
+// Marks the cells of contracted space that may be occupied, so that rays skip the others. A cell
+// stores the maximum of its decayed density and a new one at a random point of the cell.
+// Source: Mueller et al. 2022, appendix E.2 ("occupancy grids").
 class OccupancyGrid {
  public:
-  // step_length: the marcher's step in contracted space, which turns densities into opacities.
   // All cells start as occupied.
+  //   step_length  of the ray marcher in contracted space, to convert densities into opacities
   OccupancyGrid(const OccupancyOptions& options, float step_length);
 
   const OccupancyOptions& Options() const { return options_; }
 
-  // Whether the cell of a position in the unit cube may hold matter. Outside the cube: no.
+  // Whether the cell of a position in the unit cube is occupied; false outside the cube.
   bool Occupied(const Eigen::Vector3f& position) const {
     const std::int64_t cell = CellOf(position);
     return cell >= 0 && occupied_[cell] != 0;
   }
 
-  // How far all cells are empty about a position in an empty cell, in units of contracted space; 0
-  // next to matter. Found block by block, so a bound and not the distance itself.
+  // A radius around a position in an empty cell within which all cells are empty, in units of
+  // contracted space; 0 next to occupied cells. A lower bound, since it is found by blocks of
+  // cells.
   float FreeRadius(const Eigen::Vector3f& position) const;
 
-  // Cells for which `visible(centre and half diagonal of the cell, in the unit cube)` is false are
-  // empty for good: what no training photograph sees cannot be learned, only dreamt.
+  // Marks cells for which `visible(centre, half diagonal)` of the cell, in the unit cube, is false
+  // as permanently empty: no training photograph sees them, so nothing there can be learned.
   void KeepVisible(const std::function<bool(const Eigen::Vector3f&, float)>& visible);
 
-  // Draws fresh densities for a random quarter of the occupied cells and an eighth of the others (a
-  // quarter too during warm-up), then decides anew which cells are occupied.
+  // Samples the density in a random quarter of the occupied cells and an eighth of the others (a
+  // quarter during warm-up), then updates which cells are occupied.
   //   density  positions [N,3] in the unit cube -> [N], 1 / unit of contracted space
   using DensityFunction = std::function<std::vector<float>(std::span<const float>)>;
   void Update(std::int64_t step, std::uint64_t seed, const DensityFunction& density);
 
   double OccupiedFraction() const;
 
-  // The state that a checkpoint keeps.
-  std::vector<float>& Density() { return density_; }  // [cells] remembered, -1: never seen
+  // The state for checkpoints.
+  std::vector<float>& Density() { return density_; }  // [cells] stored, -1: never visible
   const std::vector<float>& Density() const { return density_; }
-  void Refresh();  // decides from Density() which cells are occupied
+  void Refresh();  // updates from Density() which cells are occupied
 
  private:
-  void Decided();  // brings what follows from occupied_ up to date
+  void UpdateBlockDistances();  // from occupied_
   std::int64_t CellOf(const Eigen::Vector3f& position) const;
   Eigen::Vector3f CellCorner(std::int64_t cell) const;
 
@@ -81,8 +82,9 @@ class OccupancyGrid {
   float step_length_;
   std::vector<float> density_;
   std::vector<std::uint8_t> occupied_;
-  int blocks_;                                // along an axis, of kBlock cells each way
-  std::vector<std::uint8_t> block_distance_;  // blocks to the nearest with an occupied cell, 0: has
+  int blocks_;  // along an axis, of kBlock^3 cells each
+  // Chessboard distance of each block to the nearest block with an occupied cell, in blocks.
+  std::vector<std::uint8_t> block_distance_;
 };
 
 }  // namespace nerf

@@ -5,7 +5,7 @@
 
 namespace nerf {
 
-// The samples of a batch of rays, packed ray after ray.
+// The samples of a batch of R rays, packed ray after ray; S in total.
 struct PackedSamples {
   std::vector<std::int64_t> ray_begin;  // [R+1] first sample of each ray; the last entry is S
   std::vector<std::int64_t> ray;        // [S] the ray of each sample
@@ -17,7 +17,8 @@ struct PackedSamples {
   std::int64_t Size() const { return static_cast<std::int64_t>(t.size()); }
 };
 
-// The samples for which `kept` says how many from the front of each ray are wanted.
+// The first samples of each ray.
+//   kept  [R] how many of each ray
 PackedSamples KeepFront(const PackedSamples& samples, const std::vector<std::int64_t>& kept);
 
 }  // namespace nerf

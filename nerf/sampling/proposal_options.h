@@ -5,8 +5,7 @@
 
 namespace nerf {
 
-// Where the samples of a ray stand when a small density field, the proposal, chooses their places
-// and not the occupancy grid.
+// Sample placement by a proposal network, a small density field, instead of the occupancy grid.
 // Source: Barron et al. 2022, "Mip-NeRF 360", section 3; the hash-encoded proposal of Tancik et al.
 // 2023, "Nerfstudio".
 struct ProposalOptions {

@@ -12,11 +12,11 @@ namespace nerf {
 
 namespace {
 
-// What a speed is divided by at least.
-constexpr float kSlowest = 1e-20f;
+// Lower bound of a speed that is divided by.
+constexpr float kLowestSpeed = 1e-20f;
 
-// How fast a ray moves, and where it is, in contracted space. For points that are no farther out
-// than poses can be: without ContractedSpeed's care for squares that overflow.
+// Speed and position of a ray in contracted space. Faster than ContractedSpeed and Contract, since
+// squares of distances that poses can have do not overflow.
 struct Contracted {
   static float Speed(const Eigen::Vector3f& x, const Eigen::Vector3f& direction) {
     const float square = x.squaredNorm();
@@ -27,9 +27,9 @@ struct Contracted {
     const float across = (2.0f - inverse) * inverse;
     return std::sqrt(along * along + across * across * std::max(0.0f, 1.0f - radial * radial));
   }
-  // At most how much faster than x the contracted point moves, r = |x|: the tangential speed, which
-  // falls with r. Radially it is 1/r^2.
-  static float FastestSpeed(const Eigen::Vector3f& x) {
+  // An upper bound of the speed at x in any direction: the tangential speed, which decreases with
+  // r = |x|. The radial speed is 1/r^2.
+  static float HighestSpeed(const Eigen::Vector3f& x) {
     const float r = x.norm();
     return r <= 1 ? 1.0f : (2.0f - 1.0f / r) / r;
   }
@@ -41,10 +41,10 @@ struct Contracted {
   }
 };
 
-// The same in the unit ball, where nothing is contracted.
+// The same inside the unit ball, where space is not contracted.
 struct UnitBall {
   static float Speed(const Eigen::Vector3f&, const Eigen::Vector3f&) { return 1; }
-  static float FastestSpeed(const Eigen::Vector3f&) { return 1; }
+  static float HighestSpeed(const Eigen::Vector3f&) { return 1; }
   static Eigen::Vector3f InCube(const Eigen::Vector3f& x) { return UnitCubeFromContracted(x); }
 };
 
@@ -54,15 +54,15 @@ void March(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
   const float step = options.StepLength();
   const auto [near_distance, far_distance] = RangeOfRay(rays, r, options);
-  const float nearest = -origin.dot(direction);  // where the ray passes the centre
+  const float nearest = -origin.dot(direction);  // where the ray is closest to the centre
   float t = near_distance;
   float fraction = 1.0f - rays.jitter[r];
   while (t < far_distance) {
     const float speed = Space::Speed(origin + t * direction, direction);
-    // Far out along the ray the contracted point hardly moves; without a bound one step would be
-    // longer than everything before it.
+    // At a great distance the contracted point hardly moves; a step is bounded so that it is not
+    // longer than the ray before it.
     const float longest = std::min(std::max(t, 1.0f), far_distance - t);
-    const float dt = std::min(fraction * step / std::max(speed, kSlowest), longest);
+    const float dt = std::min(fraction * step / std::max(speed, kLowestSpeed), longest);
     fraction = 1.0f;
     const float middle = t + 0.5f * dt;
     const Eigen::Vector3f x_in_cube = Space::InCube(origin + middle * direction);
@@ -71,17 +71,17 @@ void March(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
       out.t.push_back(middle);
       out.dt.push_back(dt);
     } else if (const float free = grid.FreeRadius(x_in_cube); free > 2 * step) {
-      // Over what is empty in one go: as far as the fastest speed on the way allows, which is that
-      // of its innermost point.
+      // Skips empty space in one step, as far as the highest speed on the way allows: that at the
+      // point of the way closest to the centre.
       const auto reach = [&](float at) {
-        return free / std::max(Space::FastestSpeed(origin + at * direction), kSlowest);
+        return free / std::max(Space::HighestSpeed(origin + at * direction), kLowestSpeed);
       };
       const float guess = middle + reach(middle);
       const float innermost = std::clamp(nearest, middle, guess);
       t = std::max(t + dt, middle + reach(innermost));
       continue;
     }
-    // Even where a step is too short for the precision of t, the ray must move on.
+    // Advances even where a step is below the precision of t.
     t = std::max(t + dt, std::nextafter(t, far_distance));
   }
 }
@@ -94,10 +94,11 @@ RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& op
   if (options.unbounded) return {near, far};
   const Eigen::Vector3f origin(&rays.origin[3 * r]), direction(&rays.direction[3 * r]);
   const float middle = -origin.dot(direction);
-  // From the point of the ray that is nearest to the centre, so that far cameras lose no digits.
-  const float aside = (origin + middle * direction).stableNorm();
-  if (!(aside < 1)) return {near, near};
-  const float half = std::sqrt((1 - aside) * (1 + aside));
+  // Computed from the point of the ray closest to the centre, so that distant cameras lose no
+  // digits.
+  const float closest = (origin + middle * direction).stableNorm();
+  if (!(closest < 1)) return {near, near};
+  const float half = std::sqrt((1 - closest) * (1 + closest));
   const float begin = std::clamp(middle - half, near, far);
   return {begin, std::clamp(middle + half, begin, far)};
 }
@@ -123,8 +124,8 @@ bool UsesProposal(const MarchOptions& options, bool scene_has_alpha) {
 PackedSamples MarchRays(const RayBatch& rays, const OccupancyGrid& grid,
                         const MarchOptions& options) {
   const std::int64_t count = rays.Size();
-  // A fixed number of chunks, each with its own buffers, joined in order: the result does not
-  // depend on the number of threads.
+  // Chunks of fixed size, each with its own buffers, are concatenated in order, so that the result
+  // does not depend on the number of threads.
   constexpr std::int64_t kChunk = 64;
   const std::int64_t chunks = (count + kChunk - 1) / kChunk;
   std::vector<RaySamples> parts(chunks);

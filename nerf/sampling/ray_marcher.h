@@ -52,7 +52,7 @@ struct MarchOptions {
   }
 };
 
-// The samples of one ray, or of several one after the other.
+// The samples of one ray, or of several rays one after the other.
 struct RaySamples {
   std::vector<float> position;  // [S,3] contracted, in the unit cube
   std::vector<float> t, dt;     // [S] as in PackedSamples
@@ -60,26 +60,26 @@ struct RaySamples {
   std::int64_t Size() const { return static_cast<std::int64_t>(t.size()); }
 };
 
-// The part of a ray on which samples are placed, near <= far.
+// The section of a ray on which samples are placed, near <= far.
 struct RayRange {
   float near, far;
 };
-// From near_distance to far_distance; where the scene is bounded, within the unit ball, in which
-// the contraction is the identity. A ray that misses it has no length.
-//   r  of the batch
+// The section of ray r between the near and the far plane; of a bounded scene, its intersection
+// with the unit ball, in which the contraction is the identity. Empty where the ray misses the
+// ball.
 RayRange RangeOfRay(const RayBatch& rays, std::int64_t r, const MarchOptions& options);
 
-// Whether a proposal field places the samples.
+// Whether a proposal network places the samples.
 bool UsesProposal(const MarchOptions& options, bool scene_has_alpha);
 
-// Steps along a ray with a constant step in contracted space (so the step grows with the
-// distance outside the unit ball as the field's resolution falls) and keeps the samples that stand
-// in occupied cells, each in the middle of its step. The first step of a ray is shortened to the
-// fraction 1 - jitter, which shifts all that follow. Appends the samples of ray r to `out`.
+// Marches along ray r with a constant step in contracted space (so that outside the unit ball steps
+// grow as the field's resolution decreases), and appends to `out` one sample at the centre of each
+// step that is in an occupied cell. The first step is shortened to the fraction 1 - jitter, which
+// shifts all that follow.
 void MarchRay(const RayBatch& rays, std::int64_t r, const OccupancyGrid& grid,
               const MarchOptions& options, RaySamples& out);
 
-// MarchRay for all of them, on all threads.
+// MarchRay of all rays, on all threads.
 PackedSamples MarchRays(const RayBatch& rays, const OccupancyGrid& grid,
                         const MarchOptions& options);
 

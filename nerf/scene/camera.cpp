@@ -102,18 +102,22 @@ Camera Downscaled(const Camera& camera, int factor) {
   return result;
 }
 
-Camera RowsOf(const Camera& camera, int top, int height) {
+Camera CropRows(const Camera& camera, int top, int height) {
   Camera result = camera;
   result.height = height;
-  result.params[FirstDistortionParam(camera.model) - 1] -= top;  // the principal point's y
+  result.params[FirstDistortionParam(camera.model) - 1] -= top;  // y of the principal point
   return result;
 }
 
-Camera ColumnsOf(const Camera& camera, int left, int width) {
+Camera CropColumns(const Camera& camera, int left, int width) {
   Camera result = camera;
   result.width = width;
-  result.params[FirstDistortionParam(camera.model) - 2] -= left;  // and its x
+  result.params[FirstDistortionParam(camera.model) - 2] -= left;  // x of the principal point
   return result;
+}
+
+std::int64_t PixelCount(const Camera& camera) {
+  return static_cast<std::int64_t>(camera.width) * camera.height;
 }
 
 double FocalLength(const Camera& camera) { return FocalLengths(camera).mean(); }

@@ -9,19 +9,20 @@
 
 namespace nerf {
 
-// fx, fy and cx, cy in pixels, whatever the model; a model with one focal length gives it twice.
+// (fx, fy) and (cx, cy) in pixels, for any model; a model with one focal length has fx = fy.
 Eigen::Vector2d FocalLengths(const Camera& camera);
 Eigen::Vector2d PrincipalPoint(const Camera& camera);
-// The first parameter after the principal point.
+// Index of the first parameter after the principal point.
 int FirstDistortionParam(CameraModel model);
 
-// Throws InputError that begins with `where` unless width and height are at least 1, the number of
-// parameters is the model's, all are finite and the focal lengths positive.
+// Throws InputError, beginning with `where`, unless width and height are in [1, 2^20], the number
+// of parameters is that of the model, all are finite, and the focal lengths are positive.
 void CheckCamera(const Camera& camera, std::string_view where);
 
-// Whether a camera of width x height describes the pixels as they are stored (false) or after they
-// were turned upright as EXIF says (true); nullopt where it fits neither way. COLMAP ignores EXIF,
-// so the stored size decides wherever both fit.
+// Whether a camera describes the pixels as stored in the file (false) or after rotation by the EXIF
+// orientation (true), from its width and height. Where both fit, as stored, since COLMAP ignores
+// EXIF.
+//   returns  nullopt where neither fits
 std::optional<bool> UprightByExif(const Camera& camera, const ImageSize& stored);
 
 // A camera in the pixels of an image file.
@@ -30,9 +31,10 @@ struct FittedCamera {
   bool upright_by_exif = false;
 };
 
-// As above, but the image may also be a larger or smaller copy of the camera's: with exactly the
-// same proportions, or reduced by a whole factor with the remainder cut or rounded (1079 -> 539).
-// The intrinsics are scaled to the image. nullopt where it fits neither way.
+// The same, but the image may also be a scaled copy of the camera's: of exactly the same aspect
+// ratio, or reduced by an integer factor, truncated or rounded (1079 -> 539). Scales the intrinsics
+// to the image.
+//   returns  nullopt where nothing fits
 std::optional<FittedCamera> FitToImage(const Camera& camera, const ImageSize& stored);
 
 }  // namespace nerf

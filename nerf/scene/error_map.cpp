@@ -8,18 +8,18 @@
 namespace nerf {
 namespace {
 
-// A cell has the size of the smallest patch whose error is worth a statistic of its own, or of a
-// larger one where photographs are so many that summing cells would take a share of a step.
+// Side of a cell in pixels. Doubled until there are at most kMostCells cells, so that summing over
+// them takes no noticeable part of a training step.
 constexpr std::int64_t kSmallestEdge = 16;
 constexpr std::int64_t kMostCells = 1 << 16;
 
-// The share that an error has in the running mean of its cell.
-constexpr float kNews = 0.1f;
+// Weight of a new error in the running mean of its cell.
+constexpr float kUpdateRate = 0.1f;
 
 constexpr float kUnknown = -1.0f;
 
-// The least that counts as wrong, so that a cell which is right for the moment is drawn again some
-// day; and the most, so that one cell does not take all the rays.
+// Bounds of the error: from below, so that a cell which is converged for now is still drawn
+// sometimes; from above, so that one cell does not take all the rays.
 constexpr float kLeastError = 1e-7f, kMostError = 1.0f;
 
 std::int64_t Cells(std::int64_t pixels, std::int64_t edge) { return (pixels + edge - 1) / edge; }
@@ -48,8 +48,8 @@ ErrorMap::ErrorMap(const std::vector<View>& views)
     first_cell_.push_back(static_cast<std::int64_t>(size_.size()));
   }
   error_.assign(size_.size(), kUnknown);
-  until_.resize(size_.size());
-  Accumulate();
+  cumulative_.resize(size_.size());
+  UpdateCumulative();
 }
 
 std::int64_t ErrorMap::CellsAcross(std::size_t view) const {
@@ -63,9 +63,9 @@ std::int64_t ErrorMap::CellOf(const Pixel& pixel) const {
 }
 
 ErrorMap::Pixel ErrorMap::Draw(std::uint64_t bits) const {
-  const double wanted = static_cast<double>(bits >> 11) * 0x1p-53 * until_.back();
-  const auto found = std::ranges::upper_bound(until_, wanted) - until_.begin();
-  const std::int64_t cell = std::min<std::int64_t>(found, std::ssize(until_) - 1);
+  const double wanted = static_cast<double>(bits >> 11) * 0x1p-53 * cumulative_.back();
+  const auto found = std::ranges::upper_bound(cumulative_, wanted) - cumulative_.begin();
+  const std::int64_t cell = std::min<std::int64_t>(found, std::ssize(cumulative_) - 1);
   const auto after = std::ranges::upper_bound(first_cell_, cell);
   Pixel pixel;
   pixel.view = static_cast<std::size_t>(after - first_cell_.begin() - 1);
@@ -80,30 +80,30 @@ ErrorMap::Pixel ErrorMap::Draw(std::uint64_t bits) const {
   return pixel;
 }
 
-void ErrorMap::Learn(std::span<const std::int64_t> cells, std::span<const float> squared_error) {
+void ErrorMap::Update(std::span<const std::int64_t> cells, std::span<const float> squared_error) {
   for (std::size_t r = 0; r < cells.size(); ++r) {
     float& error = error_[cells[r]];
     const float shown = std::min(squared_error[r], kMostError);
-    error = error == kUnknown ? shown : error + kNews * (shown - error);
+    error = error == kUnknown ? shown : error + kUpdateRate * (shown - error);
   }
-  Accumulate();
+  UpdateCumulative();
 }
 
 void ErrorMap::SetErrors(std::span<const float> errors) {
   if (errors.size() != error_.size()) {
     throw InputError(
-        "the photographs are not those of the checkpoint: they have {} squares of {} pixels, it "
-        "has {}; train anew",
+        "the photographs are not those of the checkpoint: its error map has {2} cells, they have "
+        "{0} of {1} pixels; train again",
         error_.size(), edge_, errors.size());
   }
   if (!std::ranges::all_of(errors, [](float e) { return e == kUnknown || (e >= 0 && e <= 1); })) {
-    throw InputError("the checkpoint's errors of photographs are none; train anew");
+    throw InputError("the checkpoint's error map holds values outside [0,1]; train again");
   }
   std::ranges::copy(errors, error_.begin());
-  Accumulate();
+  UpdateCumulative();
 }
 
-void ErrorMap::Accumulate() {
+void ErrorMap::UpdateCumulative() {
   double known = 0, pixels = 0;
   for (std::size_t i = 0; i < error_.size(); ++i) {
     if (error_[i] == kUnknown) continue;
@@ -114,7 +114,7 @@ void ErrorMap::Accumulate() {
   double sum = 0;
   for (std::size_t i = 0; i < error_.size(); ++i) {
     const float error = error_[i] == kUnknown ? mean : error_[i];
-    until_[i] = sum += static_cast<double>(std::max(error, kLeastError) * size_[i]);
+    cumulative_[i] = sum += static_cast<double>(std::max(error, kLeastError) * size_[i]);
   }
 }
 

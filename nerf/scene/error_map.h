@@ -4,14 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "nerf/scene/dataset.h"
+#include "nerf/scene/view.h"
 
 namespace nerf {
 
-// Where in the photographs the field is still wrong: a running mean of the squared error for each
-// square of pixels, and pixels drawn as often as their square is wrong. Rays are so spent on edges
-// and fur and not on walls that are right already. Source: the error map of Mueller et al. 2022,
-// "Instant Neural Graphics Primitives".
+// Importance sampling of pixels by training error: the photographs are divided into square cells of
+// pixels, each with a running mean of its squared error, and a cell is drawn in proportion to it.
+// Rays so go to edges and fur, not to walls that are converged. Source: the error map of Mueller et
+// al. 2022, "Instant Neural Graphics Primitives".
 class ErrorMap {
  public:
   struct Pixel {
@@ -19,37 +19,37 @@ class ErrorMap {
     std::int64_t index = 0;  // y * width + x
   };
 
-  // Starts with the same error everywhere: a cell of which nothing is known counts as wrong as the
-  // others are in the mean. `views` must outlive it.
+  // Starts with the same error everywhere: a cell without an estimate counts with the mean of the
+  // others. `views` must outlive the map.
   explicit ErrorMap(const std::vector<View>& views);
 
   std::int64_t CellOf(const Pixel& pixel) const;
 
-  // A pixel for 64 random bits: its cell with a probability in proportion to error times size, then
-  // each pixel of the cell alike.
+  // The pixel that 64 random bits select: a cell with probability proportional to error times
+  // number of pixels, then a pixel of the cell uniformly.
   Pixel Draw(std::uint64_t bits) const;
 
-  // Takes over what a batch has shown.
-  //   cells          [R]
-  //   squared_error  [R] of a ray, the mean over its channels; above 1, as of a sun in linear
-  //                  radiance, it counts as 1
-  void Learn(std::span<const std::int64_t> cells, std::span<const float> squared_error);
+  // Updates the running means with the errors of a batch.
+  //   cells          [R] from CellOf
+  //   squared_error  [R] per ray, mean over the channels; clamped to 1 (a sun in linear radiance
+  //                  exceeds it)
+  void Update(std::span<const std::int64_t> cells, std::span<const float> squared_error);
 
-  // [cells], all of the map's state, to be kept and to be taken over; -1 where nothing is known.
-  // Throws InputError when the number differs (the photographs are others) or when they are no
-  // errors.
+  // The state of the map for checkpoints: [cells], -1 where a cell has no estimate.
   std::span<const float> Errors() const { return error_; }
+  // Throws InputError when the number of cells differs (the photographs have changed) or when a
+  // value is no error.
   void SetErrors(std::span<const float> errors);
 
  private:
-  void Accumulate();
+  void UpdateCumulative();
   std::int64_t CellsAcross(std::size_t view) const;
 
   const std::vector<View>& views_;
-  std::int64_t edge_ = 0;                 // of a cell, pixels
+  std::int64_t edge_ = 0;                 // side of a cell, pixels
   std::vector<std::int64_t> first_cell_;  // [views+1] running count
-  std::vector<float> error_, size_;       // [cells]; pixels
-  std::vector<double> until_;             // [cells] running sum of error times size
+  std::vector<float> error_, size_;       // [cells]; size in pixels
+  std::vector<double> cumulative_;        // [cells] running sum of error times size
 };
 
 }  // namespace nerf

@@ -11,10 +11,11 @@ namespace nerf {
 namespace {
 
 constexpr double kTolerance = 1e-11;
-constexpr double kRounding = 4e-16;  // a residual that cannot shrink further
+constexpr double kRounding = 4e-16;  // a residual that cannot decrease further
 constexpr int kMaxNewtonSteps = 30;
 
-// Growth of the radius, d(r N/D)/dr, has the sign of this polynomial in s = r^2 as long as D > 0.
+// The derivative of the radius, d(r N/D)/dr, has the sign of this polynomial in s = r^2 where D >
+// 0.
 constexpr std::size_t kGrowthTerms = 8;
 using GrowthPolynomial = std::array<double, kGrowthTerms>;
 
@@ -43,7 +44,7 @@ Radial FovRadial(double omega, double s) {
   const double a = 2 * std::tan(omega / 2);
   const double scale = a / omega;
   const double x2 = a * a * s;
-  if (x2 < 1e-4) {  // series: the closed form divides 0 by 0 at the centre
+  if (x2 < 1e-4) {  // a series, since the closed form is 0 / 0 at the centre
     return {scale * (1 - x2 * (1.0 / 3 - x2 * (1.0 / 5 - x2 / 7))),
             scale * a * a * (-1.0 / 3 + x2 * (2.0 / 5 - x2 * (3.0 / 7 - x2 * 4.0 / 9)))};
   }
@@ -93,8 +94,8 @@ GrowthPolynomial Growth(const LensDistortion& lens) {
   return growth;
 }
 
-// First root of a polynomial in [lo, hi] from its Bernstein coefficients there: where all of them
-// are positive there is none, else the interval is halved.
+// First root of a polynomial in [lo, hi] from its Bernstein coefficients there: none where all of
+// them are positive, otherwise by halving the interval.
 template <std::size_t N>
 std::optional<double> FirstRootBernstein(const std::array<double, N>& b, double lo, double hi,
                                          int depth) {
@@ -114,7 +115,7 @@ std::optional<double> FirstRootBernstein(const std::array<double, N>& b, double 
 // First root in (0, limit] of a polynomial that is 1 at 0.
 template <std::size_t N>
 std::optional<double> FirstRoot(const std::array<double, N>& coefficients, double limit) {
-  // Nearly every lens ends here: even without its positive terms the polynomial stays above 0.
+  // For nearly every lens the polynomial is positive even without its positive terms.
   double lower_bound = 0;
   for (std::size_t i = N; i-- > 0;) {
     lower_bound = lower_bound * limit + (i == 0 ? coefficients[0] : std::min(coefficients[i], 0.0));
@@ -140,20 +141,21 @@ std::optional<double> FirstRoot(const std::array<double, N>& coefficients, doubl
   return FirstRootBernstein(bernstein, 0.0, limit, kMaxDepth);
 }
 
-// Largest s = r^2 up to which the radius grows without folding, at most `limit`.
-double ReachSquared(const LensDistortion& lens, double limit) {
+// Largest s = r^2 up to which the distorted radius increases, at most `limit`.
+double ValidRadiusSquared(const LensDistortion& lens, double limit) {
   if (lens.fov_omega) return std::abs(*lens.fov_omega) < std::numbers::pi ? limit : 0.0;
   const double pole = FirstRoot(lens.denominator, limit).value_or(limit);
   return FirstRoot(Growth(lens), pole).value_or(pole);
 }
 
-bool IsWithinReach(const LensDistortion& lens, const Eigen::Vector2d& m) {
+bool IsInValidRange(const LensDistortion& lens, const Eigen::Vector2d& m) {
   if (!m.allFinite()) return false;
   const double s = m.squaredNorm();
   if (lens.is_fisheye && s > std::numbers::pi * std::numbers::pi) return false;
-  if (ReachSquared(lens, s) < s) return false;
+  if (ValidRadiusSquared(lens, s) < s) return false;
   const Eigen::Matrix2d jacobian = Jacobian(lens, m);
-  return jacobian.determinant() > 0 && jacobian.trace() > 0;  // tangential terms can fold as well
+  // Tangential terms can fold the image too.
+  return jacobian.determinant() > 0 && jacobian.trace() > 0;
 }
 
 std::optional<Eigen::Vector2d> Newton(const LensDistortion& lens, const Eigen::Vector2d& target,
@@ -164,16 +166,16 @@ std::optional<Eigen::Vector2d> Newton(const LensDistortion& lens, const Eigen::V
     if (!(residual.norm() > kRounding * size)) break;
     m -= Jacobian(lens, m).inverse() * residual;
   }
-  const bool lands = (Distort(lens, m) - target).norm() <= kTolerance * size;
-  return lands && IsWithinReach(lens, m) ? std::optional(m) : std::nullopt;
+  const bool converged = (Distort(lens, m) - target).norm() <= kTolerance * size;
+  return converged && IsInValidRange(lens, m) ? std::optional(m) : std::nullopt;
 }
 
-// Inverse of the radial part alone, by bisection within reach: slow, but it cannot go astray.
+// Inverse of the radial part alone, by bisection in the valid range: slow, but it always converges.
 Eigen::Vector2d RadialStart(const LensDistortion& lens, const Eigen::Vector2d& target) {
   constexpr double kFarthest = 1e4;  // tangent of 89.994 degrees
   double lo = 0;
-  double hi =
-      std::sqrt(ReachSquared(lens, std::pow(lens.is_fisheye ? std::numbers::pi : kFarthest, 2)));
+  double hi = std::sqrt(
+      ValidRadiusSquared(lens, std::pow(lens.is_fisheye ? std::numbers::pi : kFarthest, 2)));
   const double radius = target.norm();
   for (int step = 0; step < 60; ++step) {
     const double middle = (lo + hi) / 2;
@@ -186,7 +188,7 @@ Eigen::Vector2d RadialStart(const LensDistortion& lens, const Eigen::Vector2d& t
 
 std::optional<Eigen::Vector2d> DistortedFromIdeal(const LensDistortion& lens,
                                                   const Eigen::Vector2d& ideal) {
-  if (!IsWithinReach(lens, ideal)) return std::nullopt;
+  if (!IsInValidRange(lens, ideal)) return std::nullopt;
   return Distort(lens, ideal);
 }
 

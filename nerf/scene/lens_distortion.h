@@ -6,13 +6,13 @@
 
 namespace nerf {
 
-// What a lens does to the ideal image plane, with every COLMAP 3.8 model as a special case.
+// A lens distortion model of which every COLMAP 3.8 model is a special case.
 // Source: COLMAP src/base/camera_models.h; the FOV model is Devernay and Faugeras 2001.
 //
-// A point m of the ideal plane lies at tan(angle to the axis) for perspective lenses and at the
-// angle itself (radians) for fisheye lenses. The lens moves it, with s = |m|^2, to
+// A point m of the ideal image plane is at the radius tan(angle to the axis) for perspective lenses
+// and at the angle itself (radians) for fisheye lenses. It is distorted, with s = |m|^2, to
 //   m N(s)/D(s)  +  tangential (p1, p2)  +  thin prism (sx, sy) s
-// Where `fov_omega` is set, atan(2 |m| tan(omega / 2)) / omega takes the place of |m| N/D.
+// Where `fov_omega` is set, atan(2 |m| tan(omega / 2)) / omega replaces |m| N/D.
 struct LensDistortion {
   bool is_fisheye = false;
   std::array<double, 5> numerator{1, 0, 0, 0, 0};  // coefficients of s^0, s^1, ...
@@ -22,16 +22,15 @@ struct LensDistortion {
   std::optional<double> fov_omega;   // radians
 };
 
-// Where the lens moves a point of the ideal plane.
-//   returns  nullopt beyond the lens' reach: past the radius where the polynomial first stops
-//   growing
-//            (the image would fold over itself there), or more than 180 degrees off a fisheye's
-//            axis
+// Distorts a point of the ideal plane.
+//   returns  nullopt outside the valid range of the model: beyond the radius at which the
+//            polynomial stops increasing, where the image would fold over itself, or more than 180
+//            degrees off the axis of a fisheye
 std::optional<Eigen::Vector2d> DistortedFromIdeal(const LensDistortion& lens,
                                                   const Eigen::Vector2d& ideal);
 
-// The inverse, by Newton's method with an analytic Jacobian.
-//   returns  nullopt where no ideal point within reach lands within 1e-11 (relative above 1)
+// The inverse, by Newton's method with an analytic Jacobian, accurate to 1e-11 (relative above 1).
+//   returns  nullopt where no point in the valid range was found
 std::optional<Eigen::Vector2d> IdealFromDistorted(const LensDistortion& lens,
                                                   const Eigen::Vector2d& distorted);
 

@@ -13,24 +13,55 @@
 namespace nerf {
 namespace {
 
-// 1 where a photograph is not white to the end of its scale in any channel, 0 where it is.
-Image NotWhite(const Image& photograph) {
-  Image below(photograph.width, photograph.height, 1, ColorEncoding::kLinear);
-  for (std::size_t i = 0; i < below.pixels.size(); ++i) {
+// A mask that is 0 where a photograph is clipped (1 in some channel) and 1 elsewhere.
+Image UnclippedMask(const Image& photograph) {
+  Image unclipped(photograph.width, photograph.height, 1, ColorEncoding::kLinear);
+  for (std::size_t i = 0; i < unclipped.pixels.size(); ++i) {
     const float* const rgb = &photograph.pixels[i * photograph.channels];
     const bool transparent = photograph.channels == 4 && rgb[3] == 0;
-    below.pixels[i] = transparent || std::max({rgb[0], rgb[1], rgb[2]}) < 1 ? 1.0f : 0.0f;
+    unclipped.pixels[i] = transparent || std::max({rgb[0], rgb[1], rgb[2]}) < 1 ? 1.0f : 0.0f;
   }
-  return below;
+  return unclipped;
 }
 
-// The pixels that are in both; all are in one that is empty.
-std::vector<std::uint32_t> Both(const std::vector<std::uint32_t>& some,
-                                const std::vector<std::uint32_t>& others) {
-  if (some.empty()) return others;
+// The intersection of two ascending lists, of which an empty `a` stands for all pixels.
+std::vector<std::uint32_t> Intersection(const std::vector<std::uint32_t>& a,
+                                        const std::vector<std::uint32_t>& b) {
+  if (a.empty()) return b;
   std::vector<std::uint32_t> both;
-  std::ranges::set_intersection(some, others, std::back_inserter(both));
+  std::ranges::set_intersection(a, b, std::back_inserter(both));
   return both;
+}
+
+// Applies a mask in full resolution to pixels in full resolution.
+void ApplyMask(const Image& mask, const PosedImage& image, const PhotographOptions& options,
+               Photograph& photograph) {
+  if (*options.masks == MaskMeaning::kEmpty) {
+    photograph.pixels = WithMask(photograph.pixels, mask);
+    return;
+  }
+  photograph.valid_pixels = UnmaskedPixels(mask, options.downscale);
+  if (photograph.valid_pixels.empty()) {
+    throw InputError("{}: masks out the whole photograph; black is what it masks out",
+                     image.mask.string());
+  }
+}
+
+// Converts pixels in full resolution to linear and marks the clipped ones as invalid.
+void Linearize(const PosedImage& image, const Camera& camera, int downscale,
+               Photograph& photograph) {
+  photograph.valid_pixels = Intersection(
+      photograph.valid_pixels, UnmaskedPixels(UnclippedMask(photograph.pixels), downscale));
+  if (photograph.valid_pixels.empty()) {
+    throw InputError(
+        "{}: every pixel is clipped to white, so none can be used beside linear images; remove it, "
+        "or give an EXR of it",
+        image.path.string());
+  }
+  if (std::ssize(photograph.valid_pixels) == PixelCount(Downscaled(camera, downscale))) {
+    photograph.valid_pixels.clear();  // all
+  }
+  photograph.pixels = ToLinear(photograph.pixels);
 }
 
 }  // namespace
@@ -42,36 +73,17 @@ Photograph LoadPhotograph(const PosedImages& posed, const PosedImage& image,
   const Camera& camera = posed.cameras[image.camera];
   if (pixels.width != camera.width || pixels.height != camera.height) {
     throw InputError(
-        "{}: is {}x{} pixels, but its camera in {} is {}x{}; give the photographs that the poses "
-        "were made from",
+        "{}: is {}x{} pixels, but its camera in {} is {}x{}; give the photographs from which the "
+        "poses were computed",
         image.path.string(), pixels.width, pixels.height, posed.source.string(), camera.width,
         camera.height);
   }
   if (options.masks && !image.mask.empty()) {
-    const Image mask = ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif);
-    if (*options.masks == MaskMeaning::kEmpty) {
-      pixels = WithMask(pixels, mask);
-    } else {
-      photograph.whole = WholePixels(mask, options.downscale);
-      if (photograph.whole.empty()) {
-        throw InputError("{}: masks out the whole photograph; black is what it masks out",
-                         image.mask.string());
-      }
-    }
+    ApplyMask(ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif), image,
+              options, photograph);
   }
   if (options.linear && pixels.encoding == ColorEncoding::kSrgb) {
-    photograph.whole = Both(photograph.whole, WholePixels(NotWhite(pixels), options.downscale));
-    if (photograph.whole.empty()) {
-      throw InputError(
-          "{}: is white to the end of its scale and says nothing beside linear "
-          "images",
-          image.path.string());
-    }
-    const Camera small = Downscaled(camera, options.downscale);
-    if (photograph.whole.size() == static_cast<std::size_t>(small.width) * small.height) {
-      photograph.whole.clear();  // all
-    }
-    pixels = ToLinear(pixels);
+    Linearize(image, camera, options.downscale, photograph);
   }
   pixels = Downscale(pixels, options.downscale);
   return photograph;
@@ -83,7 +95,7 @@ void CheckMasks(const PosedImages& posed) {
     const auto mask = ReadImageSize(image.mask), photograph = ReadImageSize(image.path);
     if (!mask) throw InputError("{}: cannot be read as an image", image.mask.string());
     if (!photograph || (mask->width == photograph->width && mask->height == photograph->height)) {
-      continue;  // a photograph that cannot be read is left out later
+      continue;  // a photograph that cannot be read is skipped later
     }
     throw InputError("{}: is {}x{} pixels, but its photograph is {}x{}; give a mask of that size",
                      image.mask.string(), mask->width, mask->height, photograph->width,
@@ -91,14 +103,14 @@ void CheckMasks(const PosedImages& posed) {
   }
 }
 
-int DisplayReferredAmongLinear(const PosedImages& posed) {
-  int display = 0, linear = 0;
+int CountPhotographsToLinearize(const PosedImages& posed) {
+  int display_referred = 0, linear = 0;
   for (const PosedImage& image : posed.images) {
     if (image.split == Split::kTest) continue;
     const std::optional<ColorEncoding> encoding = ReadColorEncoding(image.path);
-    if (encoding) ++(*encoding == ColorEncoding::kLinear ? linear : display);
+    if (encoding) ++(*encoding == ColorEncoding::kLinear ? linear : display_referred);
   }
-  return linear > 0 ? display : 0;
+  return linear > 0 ? display_referred : 0;
 }
 
 }  // namespace nerf

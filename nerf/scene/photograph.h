@@ -10,30 +10,30 @@
 
 namespace nerf {
 
-// How photographs are read: how small, and what their masks mean where they count.
 struct PhotographOptions {
   int downscale = 1;
-  std::optional<MaskMeaning> masks;
-  bool linear = false;  // display-referred ones too, as far as they are not white to the end of
-                        // their scale: how bright it is there they do not say
+  std::optional<MaskMeaning> masks = {};  // nullopt: masks are ignored
+  // Whether display-referred photographs are converted to linear. Their clipped pixels (1 in some
+  // channel) are then invalid, since their radiance is unknown.
+  bool linear = false;
 };
 
-// One photograph as evaluation and training see it: upright, downscaled, 3 or 4 channels.
+// One photograph as training and evaluation use it: upright, downscaled, 3 or 4 channels.
 struct Photograph {
   Image pixels;
-  std::vector<std::uint32_t> whole;  // pixels that count, rising; empty: all
+  std::vector<std::uint32_t> valid_pixels;  // y * width + x, ascending; empty: all
 };
-// Throws InputError naming what cannot be read, is not of its camera's size, or shows nothing
-// that counts.
+// Throws InputError naming the file where it cannot be read, differs in size from its camera, or
+// has no valid pixel.
 Photograph LoadPhotograph(const PosedImages& posed, const PosedImage& image,
                           const PhotographOptions& options);
 
-// Whether all masks have the size of their photographs: one that has not is a mistake of all, and
-// better told before an hour of training. Reads headers alone. Throws InputError.
+// Throws InputError naming the first mask whose size differs from its photograph's: better before
+// an hour of training than after it. Reads file headers only.
 void CheckMasks(const PosedImages& posed);
 
-// The photographs to be read (not those held out) that are display-referred where others are
-// linear, by their headers.
-int DisplayReferredAmongLinear(const PosedImages& posed);
+// The number of display-referred photographs in a capture that also has linear ones, else 0.
+// Photographs that are held out are not counted. Reads file headers only.
+int CountPhotographsToLinearize(const PosedImages& posed);
 
 }  // namespace nerf

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "nerf/geometry/rays.h"
-#include "nerf/scene/dataset.h"
 #include "nerf/scene/error_map.h"
+#include "nerf/scene/view.h"
 
 namespace nerf {
 
@@ -21,47 +21,48 @@ struct TargetBatch {
   std::vector<float> distance;
 };
 
-// Draws pixels of the training views as rays: each equally likely, but for a share of them that
-// stands where the field is still wrong, and a share that goes through the points of views that
-// have some. What is drawn is a function of seed, step and the error map, whatever the number of
-// threads. `views` must outlive the sampler.
+// Draws pixels of the training views as rays: uniformly, except for one share that the error map
+// draws and one share at depth observations. The result is a function of seed, step and error map,
+// and does not depend on the number of threads. `views` must outlive the sampler.
 class PixelSampler {
  public:
+  //   error_driven_share  of the rays, in [0,1]: drawn by the error map; 0: there is no error map
+  //   depth_share         of the rays, in [0,1]: drawn at depth observations where views have some
   explicit PixelSampler(const std::vector<View>& views, double error_driven_share = 0,
-                        double point_share = 0);
+                        double depth_share = 0);
 
-  // The background of each ray is a random colour: it tells matter from a lucky backdrop, in the
-  // prediction as in the transparent pixels of a photograph.
-  // Throws InputError when a lens lets no pixel through.
+  // Each ray has a random background colour, behind the prediction as behind transparent pixels, so
+  // that matter cannot be replaced by a background that happens to match.
+  // Throws InputError when the distortion of a lens cannot be inverted at almost any pixel.
   TargetBatch Sample(std::int64_t rays, std::uint64_t seed, std::uint64_t step) const;
 
-  // Null where all pixels are equally likely.
+  // Null where there is no error map.
   ErrorMap* Errors() { return errors_ ? &*errors_ : nullptr; }
   const ErrorMap* Errors() const { return errors_ ? &*errors_ : nullptr; }
 
  private:
   struct Drawn {
     std::size_t view = 0;
-    std::int64_t held = 0;  // which of the view's held pixels
-    float distance = 0;     // where it is known
+    std::int64_t stored = 0;  // index among the view's stored pixels
+    float distance = 0;       // 0 where it is not known
   };
-  std::optional<Drawn> DrawPoint(std::uint64_t bits) const;
+  std::optional<Drawn> DrawDepthObservation(std::uint64_t bits) const;
   Drawn Draw(std::uint64_t bits) const;
 
   const std::vector<View>& views_;
-  double error_driven_share_, point_share_;
+  double error_driven_share_, depth_share_;
   std::optional<ErrorMap> errors_;
-  std::vector<std::int64_t> first_pixel_;  // [views+1] running count
-  std::vector<std::int64_t> first_point_;  // [views+1] running count
+  std::vector<std::int64_t> first_pixel_;        // [views+1] running count
+  std::vector<std::int64_t> first_observation_;  // [views+1] running count
 };
 
-// The rays through the centres of given pixels of a view, without jitter (0.5), on one background.
-//   pixels  [R] y * width + x
-// Pixels that the lens does not reach get `valid` 0 and a ray that must not be used.
 struct ViewRays {
   RayBatch rays;
-  std::vector<std::uint8_t> valid;  // [R]
+  std::vector<std::uint8_t> valid;  // [R] 0: the pixel has no ray, that of the batch is undefined
 };
+// The rays through the centres of given pixels, all with jitter 0.5 and the same background.
+//   pixels   [R] y * width + x
+//   returns  valid 0 where the distortion cannot be inverted at a pixel
 ViewRays RaysOfPixels(const Camera& camera, const Eigen::Isometry3d& normalized_from_camera,
                       std::span<const std::int64_t> pixels, const Eigen::Vector3f& background);
 

@@ -39,27 +39,28 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
-// Which part of the data an image belongs to, where the data set itself says so.
+// The split of an image. kUnspecified until AssignSplits where the source does not define it.
 enum class Split { kUnspecified, kTrain, kValidation, kTest };
 
 // One photograph with a known pose.
 struct PosedImage {
-  std::string name;                     // as the source calls it, unique, '/' between folders
-  std::filesystem::path path;           // where the pixels are
-  std::filesystem::path mask = {};      // black where they are masked out; empty: there is none
-  int camera = 0;                       // index into PosedImages::cameras
-  Eigen::Isometry3d world_from_camera;  // OpenCV axes: x right, y down, z forward; source's units
-  bool upright_by_exif = false;  // the camera describes the pixels after turning them by EXIF
+  std::string name;                 // in the source, unique, '/' between folders
+  std::filesystem::path path;       // image file
+  std::filesystem::path mask = {};  // mask file, black where masked out; empty: none
+  int camera = 0;                   // index into PosedImages::cameras
+  Eigen::Isometry3d
+      world_from_camera;         // OpenCV axes: x right, y down, z forward; units of the source
+  bool upright_by_exif = false;  // the camera describes the pixels after rotation by EXIF
   Split split = Split::kUnspecified;
 };
 
-// One sighting of a sparse point.
+// An observation of a sparse point in an image.
 struct TrackElement {
   int image = 0;  // index into PosedImages::images
   Eigen::Vector2d pixel;
 };
 
-// A point that structure from motion found.
+// A point reconstructed by structure from motion.
 struct SparsePoint {
   Eigen::Vector3d x_in_world;
   std::array<std::uint8_t, 3> rgb{};
@@ -67,15 +68,16 @@ struct SparsePoint {
   std::vector<TrackElement> track;
 };
 
-// What sfm hands to nerf: photographs, lenses, poses, and the sparse points where there are any.
-// Everything is in the units and the world frame of the source.
+// Photographs with lenses and poses, and sparse points where there are any: the output of sfm. In
+// the units and the world frame of the source.
 struct PosedImages {
   std::vector<Camera> cameras;
   std::vector<PosedImage> images;
-  std::vector<SparsePoint> points;                            // may be empty
-  std::optional<std::array<double, 2>> depth_range_in_world;  // near, far, where the source says so
-  std::vector<std::string> missing;  // named by the source, but not among the files
-  std::filesystem::path source;      // the file or folder the poses were read from
+  std::vector<SparsePoint> points;  // may be empty
+  std::optional<std::array<double, 2>>
+      depth_range_in_world;          // near, far; where the source has them
+  std::vector<std::string> missing;  // images of the source without a readable file
+  std::filesystem::path source;      // file or folder from which the poses were read
 };
 
 }  // namespace nerf

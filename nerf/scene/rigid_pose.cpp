@@ -7,7 +7,7 @@
 namespace nerf {
 namespace {
 
-Eigen::Isometry3d TurnedAboutX(Eigen::Isometry3d world_from_camera) {
+Eigen::Isometry3d RotatedAboutX(Eigen::Isometry3d world_from_camera) {
   world_from_camera.linear().rightCols<2>() *= -1;
   return world_from_camera;
 }
@@ -38,11 +38,11 @@ Eigen::Isometry3d RigidFromMatrix(const Eigen::Matrix4d& matrix, std::string_vie
 }
 
 Eigen::Isometry3d WorldFromOpenCVCamera(const Eigen::Isometry3d& world_from_opengl_camera) {
-  return TurnedAboutX(world_from_opengl_camera);
+  return RotatedAboutX(world_from_opengl_camera);
 }
 
 Eigen::Isometry3d WorldFromOpenGLCamera(const Eigen::Isometry3d& world_from_opencv_camera) {
-  return TurnedAboutX(world_from_opencv_camera);
+  return RotatedAboutX(world_from_opencv_camera);
 }
 
 }  // namespace nerf

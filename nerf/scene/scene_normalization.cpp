@@ -13,14 +13,16 @@ namespace nerf {
 namespace {
 
 // Mean squared sine of the angle between the optical axes and their common direction, below which
-// they do not say where they meet (about 3 degrees), or say it worse than a known depth (10).
+// their intersection is undetermined (about 3 degrees), or less accurate than a known depth (10
+// degrees).
 constexpr double kLeastSpread = 0.003;
 constexpr double kLeastSpreadWithDepth = 0.03;
-// Length of the mean viewing direction below which the cameras look into all directions.
-constexpr double kLooksAhead = 0.5;
-// Distance to a scene of unknown depth, in units of the reach of the cameras before it.
-constexpr double kDepthPerReach = 4;
-// Reach of the cameras, in units of the distance to the points, that counts as one point.
+// Length of the mean viewing direction from which the cameras count as forward-facing.
+constexpr double kForwardFacing = 0.5;
+// Distance to a scene of unknown depth, in units of the extent of the cameras in front of it.
+constexpr double kDepthPerExtent = 4;
+// Extent of the cameras, in units of the distance to the points, below which they count as one
+// point.
 constexpr double kOnePoint = 0.01;
 
 struct Sphere {
@@ -34,7 +36,7 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-// The cameras about their mean centre: far from the origin nothing is lost to cancellation.
+// The cameras relative to their mean centre, so that positions far from the origin do not cancel.
 class Rig {
  public:
   explicit Rig(const PosedImages& posed) : posed_(posed) {
@@ -50,7 +52,7 @@ class Rig {
       const Camera& camera = posed.cameras[image.camera];
       const Eigen::Vector2d focal = FocalLengths(camera);
       half_widths_.push_back(0.5 * std::sqrt(camera.width / focal.x() * camera.height / focal.y()));
-      reach_ = std::max(reach_, centres_.back().norm());
+      extent_ = std::max(extent_, centres_.back().norm());
     }
   }
 
@@ -65,12 +67,12 @@ class Rig {
       }
       return {*focus, Median(radii)};
     }
-    if (mean_forward_.norm() >= kLooksAhead) return Ahead(depth);
-    return Around();
+    if (mean_forward_.norm() >= kForwardFacing) return ForwardFacing(depth);
+    return OutwardFacing();
   }
 
-  // Brings the mean up of the cameras to +z; cameras that look straight down have none, but their
-  // backs are up.
+  // Rotates the mean up vector of the cameras to +z. Cameras that look straight down have none;
+  // their backward axis is up.
   Eigen::Matrix3d UprightRotation() const {
     constexpr double kIsDirection = 0.1;
     Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
@@ -83,10 +85,10 @@ class Rig {
   }
 
  private:
-  // The point with the smallest sum of distances to the optical axes. nullopt where the axes are
-  // nearly parallel, or where it lies behind more than a quarter of the cameras.
+  // The point with the smallest sum of distances to the optical axes; nullopt where the axes are
+  // nearly parallel, or where it is behind more than a quarter of the cameras.
   std::optional<Eigen::Vector3d> FindFocus(double least_spread) const {
-    if (reach_ == 0) return std::nullopt;
+    if (extent_ == 0) return std::nullopt;
     std::vector<double> weights(centres_.size(), 1.0);
     Eigen::Vector3d focus = Eigen::Vector3d::Zero();
     constexpr int kIterations = 20;
@@ -108,12 +110,12 @@ class Rig {
           (solver.eigenvectors().transpose() * (right / sum)).cwiseQuotient(solver.eigenvalues());
       for (std::size_t i = 0; i < centres_.size(); ++i) {
         const double distance = (focus - centres_[i]).cross(forwards_[i]).norm();
-        weights[i] = 1 / std::max(distance / reach_, 1e-3);
+        weights[i] = 1 / std::max(distance / extent_, 1e-3);
       }
     }
     std::size_t behind = 0;
     for (std::size_t i = 0; i < centres_.size(); ++i) {
-      if ((focus - centres_[i]).dot(forwards_[i]) <= 1e-3 * reach_) ++behind;
+      if ((focus - centres_[i]).dot(forwards_[i]) <= 1e-3 * extent_) ++behind;
     }
     if (4 * behind > centres_.size()) return std::nullopt;
     return focus;
@@ -136,20 +138,20 @@ class Rig {
     return Median(depths);
   }
 
-  Sphere Ahead(std::optional<double> known_depth) const {
-    double depth = reach_ > 0 ? kDepthPerReach * reach_ : 1;
+  Sphere ForwardFacing(std::optional<double> known_depth) const {
+    double depth = extent_ > 0 ? kDepthPerExtent * extent_ : 1;
     if (known_depth) depth = *known_depth;
     return {depth * mean_forward_.normalized(), depth * Median(half_widths_)};
   }
 
-  Sphere Around() const {
+  Sphere OutwardFacing() const {
     std::vector<double> distances;
     for (const SparsePoint& point : posed_.points) {
       distances.push_back((point.x_in_world - origin_).norm());
     }
     const double to_points = distances.empty() ? 0 : Median(distances);
-    double radius = 2 * reach_;
-    if (reach_ <= kOnePoint * to_points) radius = to_points;
+    double radius = 2 * extent_;
+    if (extent_ <= kOnePoint * to_points) radius = to_points;
     return {Eigen::Vector3d::Zero(), radius > 0 ? radius : 1};
   }
 
@@ -160,7 +162,7 @@ class Rig {
   std::vector<Eigen::Vector3d> centres_;  // relative to origin_
   std::vector<Eigen::Vector3d> forwards_;
   std::vector<double> half_widths_;  // of the view at distance 1
-  double reach_ = 0;                 // greatest distance of a camera from the mean
+  double extent_ = 0;                // largest distance of a camera from the mean
 };
 
 }  // namespace
@@ -199,8 +201,9 @@ SceneNormalization NormalizeScene(const PosedImages& posed) {
   result.translation = -result.scale * (result.rotation * (rig.origin() + sphere.centre));
   if (!std::isnormal(result.scale) || !result.translation.allFinite()) {
     throw InputError(
-        "{}: the poses span {:.3g} units about {:.3g} {:.3g} {:.3g}, which is beyond "
-        "reason; check their units",
+        "{}: the poses span {:.3g} units about ({:.3g}, {:.3g}, {:.3g}), out of the range of "
+        "double "
+        "arithmetic; check their units",
         posed.source.string(), sphere.radius, rig.origin().x(), rig.origin().y(), rig.origin().z());
   }
   return result;

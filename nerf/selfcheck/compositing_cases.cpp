@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "nerf/kernels/flush_denormals.h"
 #include "nerf/selfcheck/numeric_case.h"
@@ -112,7 +113,7 @@ double WeightsAreRightForEveryOpticalDepth() {
       for (int i = 0; i < repeats; ++i) ray.Add(std::ldexp(1.0f, k), 1.0f);
       const auto weights = ray.Weights();
       for (std::size_t i = 0; i < ray.Size(); ++i) {
-        // What is less than the smallest normal float is 0 as well.
+        // The floor is about the smallest normal float: below it, 0 is right as well.
         worst.AddRelative(weights[i], reference::Weight(ray.Oracle(), i), 1e-33L);
       }
     }
@@ -120,7 +121,7 @@ double WeightsAreRightForEveryOpticalDepth() {
   return worst.Get();
 }
 
-double NoLightIsLostOrMade() {
+double WeightsAndTransmittanceSumToOne() {
   WorstError worst;
   for (unsigned seed = 0; seed < 50; ++seed) {
     Ray ray = OneRay<float>::Random(256, seed);
@@ -158,8 +159,8 @@ double AHomogeneousSlabFollowsBeerAndLambert() {
   const double T = std::exp(-double{kSigma} * double{kLength});
   const auto pixel = ray.Composite();
   worst.AddRelative(pixel.rgb[0], 0.5 * (1 - T) + 0.2 * T);
-  // The mean of t under sigma e^{-sigma (t-1)} on [1, 1 + L], times the opacity; samples stand in
-  // the middle of their steps, which is right to second order.
+  // The mean of t under sigma e^{-sigma (t-1)} on [1, 1 + L], times the opacity. Samples are at the
+  // centres of their steps, which is accurate to second order.
   worst.AddRelative(pixel.depth, (1 - T) * (1 + 1 / double{kSigma}) - double{kLength} * T);
   return worst.Get();
 }
@@ -180,27 +181,31 @@ double TheUnitOfLengthDoesNotMatter() {
   return worst.Get();
 }
 
-double DenormalLightIsNoTrouble() {
+double FlushingDenormalsChangesNothing() {
   WorstError worst;
+  const auto results = [](const Ray& ray) {
+    return std::pair(ray.Composite(), ray.Backward(kAll, 1, 1).sigma);
+  };
+  const auto flushed_results = [&results](const Ray& ray) {
+    const kernels::FlushDenormals flush;
+    return results(ray);
+  };
   for (const float tau : {80.0f, 87.0f, 95.0f, 102.0f, 110.0f}) {
     Ray ray;
     ray.Add(tau, 1.0f);
     ray.Add(1.0f, 1.0f);
-    const auto plain = ray.Composite();
-    const auto plain_gradients = ray.Backward(kAll, 1, 1);
-    const kernels::FlushDenormals flush;
-    const auto flushed = ray.Composite();
-    const auto flushed_gradients = ray.Backward(kAll, 1, 1);
-    for (int c = 0; c < 3; ++c) worst.Add(std::fabs(plain.rgb[c] - flushed.rgb[c]));
-    worst.Add(std::fabs(plain.opacity - flushed.opacity));
+    const auto [pixel, gradient] = results(ray);
+    const auto [flushed_pixel, flushed_gradient] = flushed_results(ray);
+    for (int c = 0; c < 3; ++c) worst.Add(std::fabs(pixel.rgb[c] - flushed_pixel.rgb[c]));
+    worst.Add(std::fabs(pixel.opacity - flushed_pixel.opacity));
     for (std::size_t i = 0; i < ray.Size(); ++i) {
-      worst.Add(std::fabs(plain_gradients.sigma[i] - flushed_gradients.sigma[i]));
+      worst.Add(std::fabs(gradient[i] - flushed_gradient[i]));
     }
   }
   return worst.Get();
 }
 
-double StoppingEarlyLeavesTheRestToTheBackground() {
+double EarlyTerminationKeepsTheBackground() {
   WorstError worst;
   for (unsigned seed = 0; seed < 50; ++seed) {
     const Ray ray = OneRay<float>::Random(200, seed);
@@ -211,16 +216,16 @@ double StoppingEarlyLeavesTheRestToTheBackground() {
       Ray front = ray;
       for (auto* values : {&front.sigma, &front.dt, &front.t}) values->resize(kept[0]);
       front.radiance.resize(3 * kept[0]);
-      worst.Require(stop < 0.1 || front.Size() < ray.Size());  // the work stops, not only the sum
+      worst.Require(stop < 0.1 || front.Size() < ray.Size());  // samples are skipped
       const auto whole = ray.Composite(), stopped = front.Composite();
-      // No colour here is above 1: what changes is at most the light that was left.
+      // No colour is above 1, so the pixel changes by at most the remaining transmittance.
       for (int c = 0; c < 3; ++c) worst.Add(std::fabs(whole.rgb[c] - stopped.rgb[c]) / stop);
     }
   }
   return worst.Get();
 }
 
-double IntervalsOfNoLengthCountForNothing() {
+double ZeroLengthIntervalsHaveNoEffect() {
   WorstError worst;
   Ray with, without;
   for (int i = 0; i < 6; ++i) {
@@ -243,29 +248,33 @@ double IntervalsOfNoLengthCountForNothing() {
 std::vector<NumericCase> CompositingCases() {
   const std::string relative = "relative to long double";
   return {
-      {"RandomRaysMatchTheOracle", relative, 1e-6, false, RandomRaysMatchTheOracle},
-      {"EmptySpaceShowsTheBackground", "colour", 0, false, EmptySpaceShowsTheBackground},
-      {"ThinFogKeepsItsOpacity", "opacity, relative", 1e-5, false, ThinFogKeepsItsOpacity},
-      {"AnOpaqueIntervalTakesAllTheWeight", "weight", 0, false, AnOpaqueIntervalTakesAllTheWeight},
-      {"ExtremeDensitiesAndLengthsStayFinite", "finite or not", 0, false,
+      {"RandomRaysMatchTheOracle", relative, Within(5e-7, 5.7e-8), false, RandomRaysMatchTheOracle},
+      {"EmptySpaceShowsTheBackground", "colour", kExact, false, EmptySpaceShowsTheBackground},
+      {"ThinFogKeepsItsOpacity", "opacity, relative", Within(4e-7, 3.8e-8), false,
+       ThinFogKeepsItsOpacity},
+      {"AnOpaqueIntervalTakesAllTheWeight", "weight", kExact, false,
+       AnOpaqueIntervalTakesAllTheWeight},
+      {"ExtremeDensitiesAndLengthsStayFinite", "finite or not", kExact, false,
        ExtremeDensitiesAndLengthsStayFinite},
-      {"InfiniteDensityOverNoLengthIsEmpty", "opacity, gradient", 0, false,
+      {"InfiniteDensityOverNoLengthIsEmpty", "opacity, gradient", kExact, false,
        InfiniteDensityOverNoLengthIsEmpty},
-      {"WeightsAreRightForEveryOpticalDepth", relative, 1e-5, false,
+      {"WeightsAreRightForEveryOpticalDepth", relative, Within(4e-7, 3.9e-8), false,
        WeightsAreRightForEveryOpticalDepth},
-      {"NoLightIsLostOrMade", "sum of weights and rest", 256 * 1.2e-7, false, NoLightIsLostOrMade},
-      {"SplittingAnIntervalChangesNothing", "colour, relative", 1e-6, false,
+      {"WeightsAndTransmittanceSumToOne", "sum", Within(4e-7, 3.0e-8), false,
+       WeightsAndTransmittanceSumToOne},
+      {"SplittingAnIntervalChangesNothing", "colour, relative", Within(4e-7, 0), false,
        SplittingAnIntervalChangesNothing},
-      {"AHomogeneousSlabFollowsBeerAndLambert", "colour, depth, relative", 1e-6, false,
-       AHomogeneousSlabFollowsBeerAndLambert},
-      {"TheUnitOfLengthDoesNotMatter", "colour, depth, relative", 1e-6, false,
+      {"AHomogeneousSlabFollowsBeerAndLambert", "colour, depth, relative", Within(2e-7, 2.2e-8),
+       false, AHomogeneousSlabFollowsBeerAndLambert},
+      {"TheUnitOfLengthDoesNotMatter", "colour, depth, relative", Within(7e-7, 7.5e-8), false,
        TheUnitOfLengthDoesNotMatter},
-      {"DenormalLightIsNoTrouble", "with flush-to-zero against without", 1e-37, false,
-       DenormalLightIsNoTrouble},
-      {"StoppingEarlyLeavesTheRestToTheBackground", "colour, parts of the light left", 1, false,
-       StoppingEarlyLeavesTheRestToTheBackground},
-      {"IntervalsOfNoLengthCountForNothing", "colour, gradient", 0, false,
-       IntervalsOfNoLengthCountForNothing},
+      {"FlushingDenormalsChangesNothing", "with flush-to-zero against without",
+       Within(4e-38, 6.5e-39, std::numeric_limits<float>::min()), false,
+       FlushingDenormalsChangesNothing},
+      {"EarlyTerminationKeepsTheBackground", "colour, parts of the transmittance left",
+       Within(1, 0.7), false, EarlyTerminationKeepsTheBackground},
+      {"ZeroLengthIntervalsHaveNoEffect", "colour, gradient", kExact, false,
+       ZeroLengthIntervalsHaveNoEffect},
   };
 }
 

@@ -13,8 +13,8 @@
 namespace nerf {
 namespace {
 
-// Weights with which a network gives `outputs` for inputs whose first `inputs` are 1: the first
-// neuron of each layer carries a 1 on.
+// Sets weights so that a network returns `outputs` for inputs whose first `inputs` values are 1:
+// the first neuron of each hidden layer passes a 1 on.
 void SetOutputs(const Mlp& network, std::int64_t inputs, const std::vector<double>& outputs) {
   const int layers = static_cast<int>(network.Widths().size()) - 1;
   for (int l = 0; l < layers; ++l) {
@@ -40,7 +40,7 @@ KnownField::KnownField(double density, const std::vector<double>& rgb, const Mar
   {
     const torch::NoGradGuard no_grad;
     field_->Hash().Table().fill_(1.0);
-    // Beside the logarithm of density a 1 for the colour network.
+    // The logarithm of the density, and a 1 as the colour network's input.
     SetOutputs(field_->DensityNetwork(), field_->Hash().Layout().OutputSize(),
                {std::log(density) - kLogDensityBias, 1.0});
     std::vector<double> logits;

@@ -9,12 +9,12 @@ namespace nerf {
 
 class RadianceField;
 
-// A field whose density and colour are the same everywhere and known, and both engines on it: rays
-// inside the unit ball have pixels in closed form.
+// A field of known, constant density and colour, and both engines on it: the pixels of rays inside
+// the unit ball have a closed form.
 class KnownField {
  public:
-  // density  1 / normalized scene unit, within what the activation can say
-  // rgb      in (0,1)
+  //   density  1 / normalized scene unit, within the range of the activation
+  //   rgb      in (0,1)
   KnownField(double density, const std::vector<double>& rgb, const MarchOptions& march,
              bool with_proposal = false);
   ~KnownField();
@@ -24,10 +24,10 @@ class KnownField {
   // LibTorchEngine, then FusedEngine.
   const std::vector<std::shared_ptr<Engine>>& Engines() const { return engines_; }
   RadianceField& Field() { return *field_; }
-  // The gradients that a step left, as one row; none are left behind.
+  // The accumulated gradients of all parameters, flattened into one row. Clears them.
   std::vector<double> TakeGradients();
 
-  // Rays from the origin to all sides, on the background (0.2, 0.4, 0.6), that aim at grey.
+  // Rays from the origin in all directions, with background (0.2, 0.4, 0.6) and target grey (0.5).
   static TargetBatch RaysFromTheOrigin(int count);
 
  private:

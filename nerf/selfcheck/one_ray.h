@@ -13,7 +13,7 @@ namespace nerf {
 
 inline const std::vector<float> kRed = {1, 0, 0};
 
-// One ray for the compositing kernels in Real (float or double) and for their oracle.
+// One ray for the compositing kernels in Real (float or double) and for their reference.
 template <class Real>
 struct OneRay {
   std::vector<Real> sigma, dt, t, radiance;
@@ -28,7 +28,7 @@ struct OneRay {
 
   std::size_t Size() const { return sigma.size(); }
 
-  // A sample behind the last one; the first begins at distance 1.
+  // Appends a sample behind the last one; the first interval begins at distance 1.
   void Add(Real density, Real length, Real r = Real(0.5), Real g = Real(0.25),
            Real b = Real(0.75)) {
     const Real begin = t.empty() ? Real(1) : t.back() + dt.back() / 2;
@@ -68,7 +68,7 @@ struct OneRay {
     return weights;
   }
 
-  // Of L = g_rgb . rgb + g_opacity opacity + g_depth depth.
+  // The gradients of L = g_rgb . rgb + g_opacity opacity + g_depth depth.
   Gradients Backward(const std::vector<Real>& g_rgb, Real g_opacity = 0, Real g_depth = 0) const {
     const auto begin = Begin();
     Gradients out{std::vector<Real>(Size()), std::vector<Real>(3 * Size()), std::vector<Real>(3)};

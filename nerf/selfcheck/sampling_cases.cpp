@@ -1,4 +1,4 @@
-// Where samples stand: contraction of space, intervals of a ray, resampling, distortion.
+// Sample placement: contraction of space, intervals of a ray, resampling, distortion loss.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -19,7 +19,7 @@ const Eigen::Vector3f kDirections[] = {
 
 reference::Vector3 Exact(const Eigen::Vector3f& x) { return {x[0], x[1], x[2]}; }
 
-double ContractionIsRightFromZeroToTheEndOfFloat() {
+double ContractionIsAccurateFromZeroToFloatMax() {
   WorstError worst;
   for (const float r :
        {0.0f, 1e-30f, 0.5f, 0.99999994f, 1.0f, 1.0000001f, 2.0f, 1e3f, 1e19f, 1e30f, 2e38f}) {
@@ -33,13 +33,14 @@ double ContractionIsRightFromZeroToTheEndOfFloat() {
   return worst.Get();
 }
 
-double SpeedOfContractionIsItsDerivative() {
+double ContractedSpeedIsTheDerivative() {
   WorstError worst;
   for (const float r : {0.0f, 1.0f, 1.0000001f, 1.5f, 30.0f, 1e8f}) {
     for (const Eigen::Vector3f& place : kDirections) {
       for (const Eigen::Vector3f& d : kDirections) {
         const float speed = ContractedSpeed(r * place, d);
-        // Straight outwards it is a difference of what it is sideways.
+        // In the radial direction the speed is a difference of terms as large as the tangential
+        // speed, so errors are relative to that.
         worst.AddRelative(speed, reference::ContractedSpeed(Exact(r * place), Exact(d)),
                           1 / std::max(1.0f, r));
       }
@@ -48,8 +49,8 @@ double SpeedOfContractionIsItsDerivative() {
   return worst.Get();
 }
 
-// As far as the float of a contracted point can tell distances apart.
-double ContractionCanBeUndone() {
+// Relative to the distance that one rounding of the contracted point stands for.
+double UncontractInvertsContract() {
   WorstError worst;
   for (const float r : {0.1f, 0.99f, 1.0f, 1.01f, 3.0f, 50.0f, 1e3f}) {
     for (const Eigen::Vector3f& direction : kDirections) {
@@ -70,7 +71,7 @@ RayBatch OneRayFrom(const Eigen::Vector3f& origin, const Eigen::Vector3f& direct
   return rays;
 }
 
-double IntervalsRiseFromNearToFar() {
+double IntervalsAscendFromNearToFar() {
   WorstError worst;
   for (const double near : {0.0, 1e-6, 0.05}) {
     for (const double far : {0.06, 1.0, 100.0, 1e8}) {
@@ -91,8 +92,8 @@ double IntervalsRiseFromNearToFar() {
           }
         }
       }
-      worst.Add(std::fabs(RayPlace(static_cast<float>(near), options)));
-      worst.Add(std::fabs(RayPlace(static_cast<float>(far), options) - 1.0f));
+      worst.Add(std::fabs(NormalizedDistance(static_cast<float>(near), options)));
+      worst.Add(std::fabs(NormalizedDistance(static_cast<float>(far), options) - 1.0f));
     }
   }
   return worst.Get();
@@ -118,14 +119,14 @@ double MarchingEndsAndStaysOnItsRay() {
           length += static_cast<double>(samples.dt[i]);
         }
         worst.Require(samples.Size() < 5000);
-        worst.AddRelative(length, far);  // a full grid is walked from end to end
+        worst.AddRelative(length, far);  // a full grid leaves no gap
       }
     }
   }
   return worst.Get();
 }
 
-std::vector<float> Even(int intervals) {
+std::vector<float> EvenEdges(int intervals) {
   std::vector<float> edges(intervals + 1);
   for (int i = 0; i <= intervals; ++i) {
     edges[i] = 0.5f + 3.0f * static_cast<float>(i) / static_cast<float>(intervals);
@@ -138,24 +139,24 @@ double ResamplingInvertsTheDistribution() {
   std::mt19937 generator(2);
   std::exponential_distribution<float> exponential(1.0f);
   for (const int intervals : {1, 2, 40, 100000}) {
-    const std::vector<float> edges = Even(intervals);
+    const std::vector<float> edges = EvenEdges(intervals);
     std::vector<std::vector<float>> histograms(4, std::vector<float>(intervals));
     for (float& w : histograms[0]) w = exponential(generator);
-    histograms[1].assign(intervals, 0.25f);  // flat
+    histograms[1].assign(intervals, 0.25f);  // constant
     histograms[2][intervals / 2] = 1.0f;     // a spike
-    histograms[3].assign(intervals, 0.0f);   // nothing at all: spread evenly
+    histograms[3].assign(intervals, 0.0f);   // no weight: resampled evenly
     for (const std::vector<float>& weights : histograms) {
       for (const float padding : {0.0f, 0.01f}) {
         for (const float jitter : {0.0f, 0.5f, 0.99999994f}) {
-          constexpr int kShares = 24;
-          std::vector<float> out(kShares + 1);
+          constexpr int kSamples = 24;
+          std::vector<float> out(kSamples + 1);
           ResampleIntervals(edges, weights, padding, jitter, out);
-          const auto truth = reference::Resample(edges, weights, padding, jitter, kShares);
+          const auto truth = reference::Resample(edges, weights, padding, jitter, kSamples);
           worst.Require(std::ranges::is_sorted(out));
-          // Nothing of the ray is left out: the ends of the distribution are exactly 0 and 1.
+          // The whole ray is covered: the ends of the distribution are exactly 0 and 1.
           worst.Require(out.front() == edges.front() && out.back() == edges.back());
-          for (int m = 0; m <= kShares; ++m) {
-            worst.AddRelative(out[m], truth[m], 3);  // of the ray's length
+          for (int m = 0; m <= kSamples; ++m) {
+            worst.AddRelative(out[m], truth[m], 3);  // relative to the length of the ray
           }
         }
       }
@@ -164,37 +165,37 @@ double ResamplingInvertsTheDistribution() {
   return worst.Get();
 }
 
-// Kolmogorov's statistic of places drawn with random jitters, times the root of their number: above
-// 1.95 once in a thousand draws of a right sampler. The seed is fixed.
-double ResampledPlacesFollowTheWeights() {
+// The Kolmogorov-Smirnov statistic of positions drawn with random jitters, times the square root of
+// their number: a correct sampler exceeds 1.95 once in a thousand draws. The seed is fixed.
+double ResampledPositionsFollowTheWeights() {
   WorstError worst;
   std::mt19937 generator(3);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   const std::vector<float> edges = {0, 1, 1.5f, 4, 4.25f, 8};
   const std::vector<float> weights = {1, 3, 0, 2, 0.5f};
   constexpr int kDraws = 4000;
-  std::vector<float> places;
+  std::vector<float> positions;
   for (int i = 0; i < kDraws; ++i) {
-    float cut[3];  // in two halves, the cut shifted by the jitter: anywhere
-    ResampleIntervals(edges, weights, 0.0f, uniform(generator), cut);
-    places.push_back(cut[1]);
+    float halves[3];  // two intervals of equal weight; the jitter shifts the edge between them
+    ResampleIntervals(edges, weights, 0.0f, uniform(generator), halves);
+    positions.push_back(halves[1]);
   }
-  std::ranges::sort(places);
+  std::ranges::sort(positions);
   for (int i = 0; i < kDraws; ++i) {
     double below = 0;
     for (std::size_t k = 0; k < weights.size(); ++k) {
       const double length = static_cast<double>(edges[k + 1]) - static_cast<double>(edges[k]);
       const double inside = std::clamp(
-          (static_cast<double>(places[i]) - static_cast<double>(edges[k])) / length, 0.0, 1.0);
+          (static_cast<double>(positions[i]) - static_cast<double>(edges[k])) / length, 0.0, 1.0);
       below += static_cast<double>(weights[k]) * inside / 6.5;
     }
-    // A cut in two stands between a quarter and three quarters of the weight.
+    // The edge is between a quarter and three quarters of the weight.
     worst.Add(std::fabs(2 * below - 0.5 - (i + 0.5) / kDraws) * std::sqrt(kDraws));
   }
   return worst.Get();
 }
 
-double DistortionIsTheDoubleSumAnywhereOnTheRay() {
+double DistortionLossMatchesTheDoubleSum() {
   WorstError worst;
   std::mt19937 generator(4);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
@@ -218,21 +219,21 @@ double DistortionIsTheDoubleSumAnywhereOnTheRay() {
 
 std::vector<NumericCase> SamplingCases() {
   return {
-      {"ContractionIsRightFromZeroToTheEndOfFloat", "place", 3e-7, false,
-       ContractionIsRightFromZeroToTheEndOfFloat},
-      {"SpeedOfContractionIsItsDerivative", "parts of the speed sideways", 1e-3, false,
-       SpeedOfContractionIsItsDerivative},
-      {"ContractionCanBeUndone", "place, parts of r max(1, r)", 1e-6, false,
-       ContractionCanBeUndone},
-      {"IntervalsRiseFromNearToFar", "ends", 0, false, IntervalsRiseFromNearToFar},
-      {"MarchingEndsAndStaysOnItsRay", "length, relative", 1e-4, false,
+      {"ContractionIsAccurateFromZeroToFloatMax", "position", Within(5e-7, 1.8e-7), false,
+       ContractionIsAccurateFromZeroToFloatMax},
+      {"ContractedSpeedIsTheDerivative", "parts of the tangential speed", Within(6e-5, 6.9e-6),
+       false, ContractedSpeedIsTheDerivative},
+      {"UncontractInvertsContract", "position, parts of r max(1, r)", Within(1e-6, 4.0e-7), false,
+       UncontractInvertsContract},
+      {"IntervalsAscendFromNearToFar", "ends", kExact, false, IntervalsAscendFromNearToFar},
+      {"MarchingEndsAndStaysOnItsRay", "length, relative", Within(4e-7, 1.8e-8), false,
        MarchingEndsAndStaysOnItsRay},
-      {"ResamplingInvertsTheDistribution", "place, parts of the ray", 1e-6, false,
-       ResamplingInvertsTheDistribution},
-      {"ResampledPlacesFollowTheWeights", "Kolmogorov-Smirnov statistic", 1.95, false,
-       ResampledPlacesFollowTheWeights},
-      {"DistortionIsTheDoubleSumAnywhereOnTheRay", "loss, gradient, relative", 1e-4, false,
-       DistortionIsTheDoubleSumAnywhereOnTheRay},
+      {"ResamplingInvertsTheDistribution", "position, parts of the ray", Within(5e-7, 5.6e-8),
+       false, ResamplingInvertsTheDistribution},
+      {"ResampledPositionsFollowTheWeights", "Kolmogorov-Smirnov statistic", Within(1.95, 0.74),
+       false, ResampledPositionsFollowTheWeights},
+      {"DistortionLossMatchesTheDoubleSum", "loss, gradient, relative", Within(5e-7, 5.6e-8), false,
+       DistortionLossMatchesTheDoubleSum},
   };
 }
 

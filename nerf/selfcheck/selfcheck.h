@@ -9,20 +9,20 @@
 
 namespace nerf {
 
-// All of them, from the integral to the engines.
+// All cases, from the volume-rendering integral to the engines.
 std::vector<NumericCase> NumericCases();
 
-// A case as it came out at one SIMD level.
+// The error of a case at one SIMD level.
 struct CaseResult {
   const NumericCase* numeric_case = nullptr;
-  std::string level;  // "AVX3", "AVX2", ...; empty where no vector instructions take part
+  std::string level;  // "AVX3", "AVX2", ...; empty for cases without vector code
   double error = 0;
 
-  bool Passed() const { return error <= numeric_case->bound; }  // not where it is no number
+  bool Passed() const { return error <= numeric_case->tolerance.bound; }  // false for NaN
 };
 
-// Measures every case, at every SIMD level that this processor has where it has vector code.
-//   done  called after each with the number of cases measured
+// Measures every case, those with vector code at every SIMD level of this processor.
+//   done  called after each case with the number of cases measured
 std::vector<CaseResult> MeasureCases(const std::vector<NumericCase>& cases,
                                      const std::function<void(std::int64_t)>& done);
 

@@ -117,7 +117,7 @@ StepResult Trainer::State::Learn(StepSeconds& seconds) {
     timer.Lap(seconds.pixels);
     const StepResult result = engine->AccumulateGradients(batch, context);
     timer.Lap(of_engine);
-    if (ErrorMap* errors = sampler.Errors()) errors->Learn(batch.cell, result.ray_error);
+    if (ErrorMap* errors = sampler.Errors()) errors->Update(batch.cell, result.ray_error);
     timer.Lap(seconds.pixels);
     optimizer.Step(context.learning_rate_factor);
     timer.Lap(seconds.optimizer);

@@ -1,4 +1,4 @@
-// What must hold of any ray whatever, drawn at random from all magnitudes.
+// Properties of all rays, tested on random ones of all magnitudes.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -20,7 +20,8 @@ Ray AnyRay() {
   Ray ray;
   for (std::size_t i = 0; i < samples; ++i) {
     ray.Add(sigma[i], dt[i], rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]);
-    ray.t.back() = static_cast<float>(i);  // lengths of 1e30 have no place that a float could say
+    // Not summed up: positions behind lengths of 1e30 exceed the precision of float.
+    ray.t.back() = static_cast<float>(i);
   }
   ray.background.assign(rgb.end() - 3, rgb.end());
   return ray;
@@ -79,18 +80,18 @@ RC_GTEST_PROP(AnyRay, IsTheSameWhereAnIntervalIsSplit, ()) {
   RC_ASSERT(std::fabs(a.opacity - b.opacity) <= 1e-6f * a.opacity);
 }
 
-RC_GTEST_PROP(AnyRay, HasFiniteGradientsOfThoseColoursThatItShows, ()) {
+RC_GTEST_PROP(AnyRay, HasFiniteGradients, ()) {
   const Ray ray = AnyRay();
   const auto gradients = ray.Backward({1.0f, -0.5f, 0.25f}, 0.5f);
   for (std::size_t i = 0; i < ray.Size(); ++i) {
-    // dL/dsigma carries dt as a factor: what is finite is the gradient by the optical depth.
+    // dL/dsigma has the factor dt, so only the gradient by the optical depth is finite.
     if (ray.dt[i] <= 1e30f) RC_ASSERT(std::isfinite(gradients.sigma[i]));
     for (int c = 0; c < 3; ++c) RC_ASSERT(std::fabs(gradients.radiance[3 * i + c]) <= 1.0f);
   }
   for (const float g : gradients.background) RC_ASSERT(std::isfinite(g));
 }
 
-RC_GTEST_PROP(AnyRay, ChangesByLessThanTheLightLeftWhereItStopsEarly, ()) {
+RC_GTEST_PROP(AnyRay, ChangesByLessThanTheTransmittanceOnEarlyTermination, ()) {
   Ray ray = AnyRay();
   const double stop = std::ldexp(1.0, -*rc::gen::inRange(1, 30));
   const auto begin = ray.Begin();

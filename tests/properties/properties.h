@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-// Numbers that hostile or unlucky inputs hold, for property-based tests.
+// Generators of the values of hostile or unlucky inputs, for property-based tests.
 namespace nerf::test {
 
 // 0 or more, over all magnitudes: zero, denormal, ordinary, FLT_MAX.

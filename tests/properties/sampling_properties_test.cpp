@@ -1,4 +1,4 @@
-// What must hold of any histogram, any point and any colour.
+// Properties of all histograms, points and colours.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -23,7 +23,7 @@ std::vector<float> RisingEdges(std::size_t intervals) {
   return edges;
 }
 
-RC_GTEST_PROP(AnyHistogram, IsCutIntoIntervalsThatCoverItsRay, ()) {
+RC_GTEST_PROP(AnyHistogram, IsResampledIntoIntervalsThatCoverItsRay, ()) {
   const auto intervals = *rc::gen::inRange<std::size_t>(1, 60);
   const auto edges = RisingEdges(intervals);
   const auto weights = *test::VectorOf(intervals, test::AnyLength());
@@ -35,12 +35,12 @@ RC_GTEST_PROP(AnyHistogram, IsCutIntoIntervalsThatCoverItsRay, ()) {
   RC_ASSERT(out.back() == edges.back());
 }
 
-RC_GTEST_PROP(AnyHistogram, IsTemperedToOneThatCanBeCut, ()) {
+RC_GTEST_PROP(AnyHistogram, IsResampledWithAnnealedWeights, ()) {
   const auto intervals = *rc::gen::inRange<std::size_t>(1, 60);
   const auto edges = RisingEdges(intervals);
   const auto weights = *test::VectorOf(intervals, test::Fraction());
   std::vector<float> out(25);
-  CutByWeights(edges, weights, *test::Fraction(), 0.01f, *test::Fraction(), out);
+  ResampleAnnealed(edges, weights, *test::Fraction(), 0.01f, *test::Fraction(), out);
   RC_ASSERT(std::ranges::is_sorted(out));
 }
 

@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
 
-TEST(CopyLargestFeatures, KeepsThemWithTheirDescriptorsAndForgetsMatches) {
+TEST(CopyLargestFeatures, KeepsThemWithTheirDescriptorsAndRemovesMatches) {
   const ScratchFolder folder;
   const auto full = folder.path() / "full.db", coarse = folder.path() / "coarse.db";
   WriteColmapDatabase(full, {{"a.jpg", {1, 5, 2, 4, 3}}, {"b.jpg", {7}}, {"c.jpg", {}}},
@@ -45,7 +45,7 @@ TEST(CopyLargestFeatures, KeepsThemWithTheirDescriptorsAndForgetsMatches) {
   EXPECT_EQ(read.execAndGet("SELECT rows FROM keypoints WHERE image_id = 2").getInt(), 1);
 }
 
-TEST(CopyLargestFeatures, ADamagedDatabaseIsNamedWithTheMend) {
+TEST(CopyLargestFeatures, ADamagedDatabaseIsNamedWithTheFix) {
   const ScratchFolder folder;
   const auto full = folder.path() / "full.db";
   folder.Write("full.db", "this is no database, but long enough to look at");
@@ -54,10 +54,10 @@ TEST(CopyLargestFeatures, ADamagedDatabaseIsNamedWithTheMend) {
   WriteColmapDatabase(full, {{"a.jpg", {1, 5, 2}}});
   SQLite::Database(full.string(), SQLite::OPEN_READWRITE).exec("UPDATE keypoints SET rows = 900");
   EXPECT_THAT(InputErrorOf([&] { CopyLargestFeatures(full, folder.path() / "coarse.db", 3); }),
-              HasSubstr("do not fit"));
+              HasSubstr("differ in number"));
 }
 
-// Features and matches are hours of work; whoever is told to remove them will.
+// Computing features and matches takes hours, so the message must not suggest removing them.
 TEST(CopyLargestFeatures, ALockedDatabaseIsNotToBeRemoved) {
   const ScratchFolder folder;
   const auto full = folder.path() / "full.db";
@@ -69,7 +69,7 @@ TEST(CopyLargestFeatures, ALockedDatabaseIsNotToBeRemoved) {
                              testing::Not(HasSubstr("remove"))));
 }
 
-TEST(ReadMatchedPairs, NamesThePhotographs) {
+TEST(ReadMatchedPairs, ReturnsTheNamesOfThePhotographs) {
   const ScratchFolder folder;
   const auto path = folder.path() / "d.db";
   WriteColmapDatabase(path, {{"b.jpg", {}}, {"a.jpg", {}}, {"c.jpg", {}}},

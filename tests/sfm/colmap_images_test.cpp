@@ -44,7 +44,7 @@ class ColmapImages : public testing::Test {
   ScratchFolder target_;
 };
 
-TEST_F(ColmapImages, PhotosThatColmapReadsAreLinked) {
+TEST_F(ColmapImages, PhotosThatColmapCanUseAreLinked) {
   WritePhoto(photos_.path() / "a.jpg", 32, 16);
   WritePhoto(photos_.path() / "b.png", 32, 16, 1, OIIO::TypeUInt8, 4);
   const auto photos = Photos();
@@ -55,7 +55,7 @@ TEST_F(ColmapImages, PhotosThatColmapReadsAreLinked) {
   EXPECT_EQ(fs::read_symlink(Target() / "b.png"), photos[1].path);
 }
 
-TEST_F(ColmapImages, PhotosToBeTurnedGetAnUprightCopyAndStayAsTheyAre) {
+TEST_F(ColmapImages, RotatedPhotosGetAnUprightCopyAndAreNotChanged) {
   // Stored with the bright half on the right; "turn by a quarter clockwise" brings it below.
   WritePhoto(photos_.path() / "a.jpg", 32, 16, 6);
   WritePhoto(photos_.path() / "b.jpg", 16, 32);
@@ -73,7 +73,7 @@ TEST_F(ColmapImages, PhotosToBeTurnedGetAnUprightCopyAndStayAsTheyAre) {
 }
 
 // EXIF 2.32, tag Orientation: which edges of the scene the first row and the first column show.
-TEST_F(ColmapImages, EveryOrientationIsTurnedUpright) {
+TEST_F(ColmapImages, EveryOrientationIsRotatedUpright) {
   constexpr int kWidth = 4, kHeight = 2;
   struct Case {
     int orientation;
@@ -111,7 +111,7 @@ TEST_F(ColmapImages, EveryOrientationIsTurnedUpright) {
   }
 }
 
-TEST_F(ColmapImages, ACroppedExrIsAsLargeAsItsFrame) {
+TEST_F(ColmapImages, ACroppedExrHasTheSizeOfItsDisplayWindow) {
   OIIO::ImageSpec spec(10, 6, 3, OIIO::TypeHalf);
   spec.x = 4;
   spec.y = 2;
@@ -133,7 +133,7 @@ TEST_F(ColmapImages, ACroppedExrIsAsLargeAsItsFrame) {
   EXPECT_NEAR(MeanRed(Target() / "a.exr.png", 15, 32, 0, 16), 0, 1);
 }
 
-TEST_F(ColmapImages, DeepAndFloatPhotosGetAnEightBitStandIn) {
+TEST_F(ColmapImages, SixteenBitAndFloatPhotosGetAnEightBitCopy) {
   WritePhoto(photos_.path() / "a.png", 32, 16, 1, OIIO::TypeUInt16);
   WritePhoto(photos_.path() / "b.exr", 32, 16, 1, OIIO::TypeHalf);
   const auto photos = Photos();
@@ -150,7 +150,7 @@ TEST_F(ColmapImages, DeepAndFloatPhotosGetAnEightBitStandIn) {
   EXPECT_NEAR(MeanRed(Target() / "b.exr.png", 16, 32, 0, 16), 255, 1);
 }
 
-TEST_F(ColmapImages, EachOfSeveralSizesHasItsFolder) {
+TEST_F(ColmapImages, EachOfSeveralSizesGetsItsFolder) {
   WritePhoto(photos_.path() / "a.jpg", 32, 16);
   WritePhoto(photos_.path() / "b.jpg", 40, 16);
   const auto photos = Photos();
@@ -160,7 +160,7 @@ TEST_F(ColmapImages, EachOfSeveralSizesHasItsFolder) {
   EXPECT_TRUE(fs::exists(Target() / "40x16/b.jpg"));
 }
 
-TEST_F(ColmapImages, StandInDoesNotTakeAnotherPhotosName) {
+TEST_F(ColmapImages, CopiesDoNotTakeTheNameOfAnotherPhoto) {
   WritePhoto(photos_.path() / "a.exr", 32, 16);
   WritePhoto(photos_.path() / "a.exr.png", 32, 16);
   EXPECT_THAT(Names(PlanColmapImages(Photos())), ElementsAre("a.exr.png.png", "a.exr.png"));

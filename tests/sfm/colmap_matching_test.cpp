@@ -33,21 +33,21 @@ TEST_F(SequentialMatching, ManyNumberedPhotosAreMatchedInSequence) {
 
 class GuidedMatching : public nerf::test::ColmapRun {
  protected:
-  // What COLMAP would have found: nothing that fits together, but for the first and the last.
+  // The matches of the fake COLMAP: none but between the first and the last.
   void FindFeatures(int count) {
     std::vector<nerf::test::DatabaseImage> images;
     for (int i = 0; i < count; ++i) images.push_back({fmt::format("p{:03}.png", i), {1, 2, 3}});
     WriteColmapDatabase(out_.path() / "prepared.db", images, {{0, count - 1, 90}});
     const std::string prepared = (out_.path() / "prepared.db").string();
     fake_.Set("do_feature_extractor", "cp '" + prepared + "' \"$database\"\n");
-    // Coarse matches come into the copy, which has forgotten those of the original.
+    // Coarse matches are written to the copy, from which those of the original were removed.
     fake_.Set("do_exhaustive_matcher", "cp '" + prepared + "' \"$database\"\n");
     fake_.Set("do_matches_importer",
               "cat \"$(dirname \"$database\")/pairs.txt\" >> \"$here/pairs\"\n");
   }
 };
 
-TEST_F(GuidedMatching, ComparesInFullThosePairsThatLookAlikeAndNeighbours) {
+TEST_F(GuidedMatching, MatchesTheMostSimilarPairsAndNeighbours) {
   WritePhotos(30);
   fake_.Set("models", "0 30\n");
   FindFeatures(30);
@@ -65,12 +65,12 @@ TEST_F(GuidedMatching, ComparesInFullThosePairsThatLookAlikeAndNeighbours) {
   EXPECT_FALSE(fs::exists(Workspace() / "pairs.txt"));
 }
 
-TEST_F(GuidedMatching, ComparesAllPairsWhereTooFewPhotosWereRegistered) {
+TEST_F(GuidedMatching, MatchesAllPairsWhereTooFewPhotosAreRegistered) {
   WritePhotos(30);
   fake_.Set("models", "0 20\n");
   FindFeatures(30);
   Run();
-  EXPECT_THAT(log_.Text(), HasSubstr("20 of 30 registered; the pairs that were left out"));
+  EXPECT_THAT(log_.Text(), HasSubstr("20 of 30 registered; matching the remaining pairs"));
   EXPECT_EQ(fake_.Commands().back(), "mapper");
   EXPECT_THAT(fake_.Calls()[fake_.Calls().size() - 2],
               AllOf(HasSubstr("exhaustive_matcher"), HasSubstr("database.db")));
@@ -79,7 +79,7 @@ TEST_F(GuidedMatching, ComparesAllPairsWhereTooFewPhotosWereRegistered) {
   EXPECT_THAT(fake_.Commands(), IsEmpty());
 }
 
-TEST_F(GuidedMatching, ListsHaveNoRoomForNamesWithSpaces) {
+TEST_F(GuidedMatching, ListsCannotContainNamesWithSpaces) {
   WritePhotos(30);
   fs::rename(photos_.path() / "p007.png", photos_.path() / "p 007.png");
   fake_.Set("models", "0 30\n");

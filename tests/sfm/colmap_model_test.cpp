@@ -4,12 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-#include <numbers>
-
-#include "tests/support/colmap_files.h"
-#include "tests/support/input_error_of.h"
-#include "tests/support/scratch_folder.h"
+#include "nerf/scene/camera_models.h"
+#include "tests/support/colmap_model_folder.h"
 
 namespace nerf::sfm {
 namespace {
@@ -17,39 +13,12 @@ namespace {
 namespace fs = std::filesystem;
 using nerf::test::BinaryColmapFiles;
 using nerf::test::ColmapContents;
-using nerf::test::ColmapFiles;
+using nerf::test::ColmapModel;
 using nerf::test::InputErrorOf;
-using nerf::test::ScratchFolder;
 using nerf::test::SmallColmapContents;
 using nerf::test::TextColmapFiles;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-// A model in sparse/ of a scratch folder, and its photographs in images/.
-class ColmapModel : public testing::Test {
- protected:
-  void WriteFiles(const ColmapFiles& files, const std::string& ending,
-                  const std::string& folder = "sparse") {
-    scratch_.Write(folder + "/cameras" + ending, files.cameras);
-    scratch_.Write(folder + "/images" + ending, files.images);
-    scratch_.Write(folder + "/points3D" + ending, files.points);
-  }
-  void WriteBinary(const ColmapContents& contents, const std::string& folder = "sparse") {
-    WriteFiles(BinaryColmapFiles(contents), ".bin", folder);
-  }
-  void WriteImages() {
-    scratch_.WriteImage("images/a b.ppm", 6, 5);
-    scratch_.WriteImage("images/c.ppm", 12, 8);
-    scratch_.WriteImage("images/sub/b.ppm", 12, 8);
-  }
-  PosedImages Read() { return ReadColmapModel(Sparse(), scratch_.path() / "images"); }
-  std::string ReadError() {
-    return InputErrorOf([&] { Read(); });
-  }
-  fs::path Sparse() const { return scratch_.path() / "sparse"; }
-
-  ScratchFolder scratch_;
-};
 
 void ExpectSmallModel(const PosedImages& posed) {
   ASSERT_EQ(posed.images.size(), 3u);
@@ -61,7 +30,7 @@ void ExpectSmallModel(const PosedImages& posed) {
   EXPECT_EQ(posed.cameras[posed.images[1].camera].params, (std::vector<double>{10, 6, 4, 0.1}));
   EXPECT_EQ(posed.images[1].camera, posed.images[2].camera);
   EXPECT_TRUE(posed.missing.empty());
-  // The file says camera from world: x_in_camera = x_in_world + (0, 0, 4).
+  // The file stores camera from world: x_in_camera = x_in_world + (0, 0, 4).
   EXPECT_TRUE(posed.images[0].world_from_camera.translation().isApprox(Eigen::Vector3d(0, 0, -4)));
   // A quarter turn about z, then (1, 2, 3).
   const Eigen::Vector3d x_in_camera =
@@ -83,7 +52,7 @@ void ExpectSmallModel(const PosedImages& posed) {
   EXPECT_EQ(point.track[2].pixel, Eigen::Vector2d(3, 2));
 }
 
-TEST_F(ColmapModel, BinaryAndTextSayTheSame) {
+TEST_F(ColmapModel, BinaryAndTextAreReadAlike) {
   WriteImages();
   WriteFiles(TextColmapFiles(SmallColmapContents()), ".txt");
   ExpectSmallModel(Read());
@@ -112,7 +81,7 @@ TEST_F(ColmapModel, WindowsLineEndsAndImagesWithoutPointsAreRead) {
   EXPECT_EQ(posed.images[1].name, "sub/b.ppm");
 }
 
-TEST_F(ColmapModel, EveryCameraModelComesBack) {
+TEST_F(ColmapModel, EveryCameraModelIsRead) {
   WriteImages();
   for (int id = 0; id < kNumCameraModels; ++id) {
     const CameraModel model = *CameraModelFromId(id);
@@ -130,7 +99,7 @@ TEST_F(ColmapModel, EveryCameraModelComesBack) {
   }
 }
 
-TEST_F(ColmapModel, MissingImagesAreNamedAndTheirSightingsDropped) {
+TEST_F(ColmapModel, MissingImagesAreNamedAndTheirObservationsDropped) {
   WriteImages();
   WriteBinary(SmallColmapContents());
   fs::remove(scratch_.path() / "images/a b.ppm");
@@ -157,113 +126,8 @@ TEST_F(ColmapModel, PointsMayBeAbsentButCamerasNot) {
   EXPECT_THAT(ReadError(), HasSubstr("neither cameras.bin nor cameras.txt"));
 }
 
-TEST_F(ColmapModel, BinaryCutAtAnyByteIsRefused) {
-  WriteImages();
-  const ColmapFiles whole = BinaryColmapFiles(SmallColmapContents());
-  for (const auto& [name, bytes] : {std::pair{"sparse/cameras.bin", whole.cameras},
-                                    std::pair{"sparse/images.bin", whole.images},
-                                    std::pair{"sparse/points3D.bin", whole.points}}) {
-    WriteFiles(whole, ".bin");
-    for (std::size_t length = 0; length < bytes.size(); ++length) {
-      scratch_.Write(name, bytes.substr(0, length));
-      ASSERT_THAT(ReadError(), HasSubstr("cut short or damaged")) << name << " " << length;
-    }
-    scratch_.Write(name, bytes + 'x');
-    EXPECT_THAT(ReadError(), HasSubstr("1 bytes follow the last record"));
-  }
-}
-
-TEST_F(ColmapModel, TextCutAtAnyByteNeverCrashes) {
-  WriteImages();
-  const ColmapFiles whole = TextColmapFiles(SmallColmapContents());
-  int refused = 0;
-  for (const auto& [name, bytes] : {std::pair{"sparse/cameras.txt", whole.cameras},
-                                    std::pair{"sparse/images.txt", whole.images},
-                                    std::pair{"sparse/points3D.txt", whole.points}}) {
-    WriteFiles(whole, ".txt");
-    for (std::size_t length = 0; length < bytes.size(); ++length) {
-      scratch_.Write(name, bytes.substr(0, length));
-      refused += ReadError() != "no error";
-    }
-  }
-  EXPECT_GT(refused, 100);
-}
-
-TEST_F(ColmapModel, AbsurdCountsAskForNoMemory) {
-  WriteImages();
-  const ColmapFiles whole = BinaryColmapFiles(SmallColmapContents());
-  for (const char byte : {'\xff', '\x7f'}) {
-    for (const auto& [name, bytes] : {std::pair{"sparse/cameras.bin", whole.cameras},
-                                      std::pair{"sparse/images.bin", whole.images},
-                                      std::pair{"sparse/points3D.bin", whole.points}}) {
-      WriteFiles(whole, ".bin");
-      scratch_.Write(name, std::string(8, byte) + bytes.substr(8));
-      EXPECT_THAT(ReadError(), HasSubstr("cut short or damaged"));
-    }
-    scratch_.Write("sparse/images.bin", std::string(8, byte) + whole.images.substr(8));
-    EXPECT_THAT(InputErrorOf([&] { CountRegistered(Sparse()); }), HasSubstr("images.bin"));
-  }
-}
-
-TEST_F(ColmapModel, PosesThatAreNoneAreRefusedByImage) {
-  WriteImages();
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  ColmapContents contents = SmallColmapContents();
-  contents.images[1].translation.y() = nan;
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("image 'a b.ppm': the pose is not finite"));
-  contents = SmallColmapContents();
-  contents.images[2].rotation.setZero();
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("image 'sub/b.ppm': the rotation quaternion"));
-  contents = SmallColmapContents();
-  contents.cameras[9].params[0] = nan;
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("cameras.bin: camera 9: a parameter is not finite"));
-  fs::remove_all(Sparse());
-  WriteFiles(TextColmapFiles(contents), ".txt");
-  EXPECT_THAT(ReadError(), HasSubstr("cameras.txt:3: camera 9: a parameter is not finite"));
-}
-
-TEST_F(ColmapModel, ContradictionsAreRefused) {
-  WriteImages();
-  ColmapContents contents = SmallColmapContents();
-  contents.images[0].camera_id = 4;
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("image 'c.ppm': its camera 4 is not in"));
-  contents = SmallColmapContents();
-  contents.points[1].track[0].second = 3;
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("point 7 was seen as number 3 of image 8"));
-  contents = SmallColmapContents();
-  contents.points[1].track[0].first = 1;
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("of image 1, which"));
-  contents = SmallColmapContents();
-  contents.images[1].name = "c.ppm";
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("image 'c.ppm' is listed twice"));
-  contents = SmallColmapContents();
-  contents.images[1].id = 8;
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("image id 8 is listed twice"));
-  contents = SmallColmapContents();
-  contents.images.clear();
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("no image is registered"));
-}
-
-TEST_F(ColmapModel, WrongImageSizeIsNamedWithBothSizes) {
-  WriteImages();
-  WriteBinary(SmallColmapContents());
-  scratch_.WriteImage("images/c.ppm", 6, 4);
-  const std::string error = ReadError();
-  EXPECT_THAT(error, HasSubstr("image 'c.ppm': the file is 6x4 pixels"));
-  EXPECT_THAT(error, HasSubstr("camera 3 is 12x8"));
-}
-
-TEST_F(ColmapModel, ExifTurnsOnlyImagesThatFitNoOtherWay) {
-  const auto write_turned = [&](const std::string& name, int width, int height) {
+TEST_F(ColmapModel, ExifRotatesOnlyImagesThatFitNoOtherWay) {
+  const auto write_rotated = [&](const std::string& name, int width, int height) {
     const std::string file = (scratch_.path() / "images" / name).string();
     OIIO::ImageSpec spec(width, height, 1, OIIO::TypeUInt8);
     spec.attribute("Orientation", 6);
@@ -275,8 +139,8 @@ TEST_F(ColmapModel, ExifTurnsOnlyImagesThatFitNoOtherWay) {
   };
   WriteImages();
   WriteBinary(SmallColmapContents());
-  write_turned("a b.ppm", 6, 5);
-  write_turned("c.ppm", 8, 12);
+  write_rotated("a b.ppm", 6, 5);
+  write_rotated("c.ppm", 8, 12);
   const PosedImages posed = Read();
   EXPECT_FALSE(posed.images[0].upright_by_exif);
   EXPECT_TRUE(posed.images[1].upright_by_exif);
@@ -294,7 +158,7 @@ TEST_F(ColmapModel, LargestSubModelIsChosenWhateverItsNumber) {
   EXPECT_THAT(SubModels(Sparse()), ElementsAre(Sparse() / "0", Sparse() / "2", Sparse() / "10"));
   EXPECT_EQ(LargestModel(Sparse()), Sparse() / "2");
   EXPECT_THAT(InputErrorOf([&] { LargestModel(scratch_.path()); }),
-              HasSubstr("holds no COLMAP model"));
+              HasSubstr("contains no COLMAP model"));
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ class ColmapProgramTest : public testing::Test {
   std::vector<std::string> heard_;
 };
 
-TEST_F(ColmapProgramTest, MissingProgramIsAnErrorThatSaysHowToInstallIt) {
+TEST_F(ColmapProgramTest, MissingProgramIsAnErrorWithInstallInstructions) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", scratch_.path().c_str(), 1);
   EXPECT_THAT(InputErrorOf([] { ColmapProgram::Find(); }),
@@ -43,7 +43,7 @@ TEST_F(ColmapProgramTest, MissingProgramIsAnErrorThatSaysHowToInstallIt) {
   setenv("PATH", path.c_str(), 1);
 }
 
-TEST_F(ColmapProgramTest, OptionsGoByTheNameThatTheProgramKnows) {
+TEST_F(ColmapProgramTest, OptionsAreNamedAsTheProgramListsThem) {
   const auto known = [] {
     return ColmapProgram::Find().KnownOption(
         "feature_extractor", {"SiftExtraction.use_gpu", "FeatureExtraction.use_gpu"});
@@ -55,14 +55,14 @@ TEST_F(ColmapProgramTest, OptionsGoByTheNameThatTheProgramKnows) {
   EXPECT_EQ(known(), "");
 }
 
-TEST_F(ColmapProgramTest, BothStreamsAreHeardAndLoggedAndThereIsNoDisplay) {
+TEST_F(ColmapProgramTest, BothStreamsAreReadAndLoggedAndThereIsNoDisplay) {
   const auto outcome = RunMapper("echo one; echo two >&2; echo $QT_QPA_PLATFORM");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(heard_, testing::ElementsAre("one", "two", "offscreen"));
   EXPECT_THAT(FileBytes(Log()), AllOf(HasSubstr("mapper --x 1\n"), HasSubstr("one\ntwo\n")));
 }
 
-TEST_F(ColmapProgramTest, FailureIsExplainedByTheErrorNotByWhatFollowsIt) {
+TEST_F(ColmapProgramTest, FailureIsExplainedByTheErrorMessageNotByLaterOutput) {
   const auto outcome = RunMapper(
       "echo 'Loading database'; echo 'ERROR: cannot open it'; echo '*** Check failure stack "
       "trace: ***'; echo '    @ 0x7f00 (unknown)'; echo; exit 3");
@@ -74,8 +74,8 @@ TEST_F(ColmapProgramTest, FailureIsExplainedByTheErrorNotByWhatFollowsIt) {
   EXPECT_EQ(RunMapper("echo 'Loading'; exit 1").last_line, "Loading");
 }
 
-TEST_F(ColmapProgramTest, EndBySignalIsToldApart) {
-  // What a shell starts in the background ignores Ctrl-C, and so do its children.
+TEST_F(ColmapProgramTest, TerminationBySignalIsReported) {
+  // Background processes of a shell ignore Ctrl-C, and so do their children.
   std::signal(SIGINT, SIG_DFL);
   EXPECT_THAT(InputErrorOf([&] { RunMapper("kill -INT $$"); }), HasSubstr("was interrupted"));
   EXPECT_THAT(InputErrorOf([&] { RunMapper("echo busy; kill -KILL $$"); }),
@@ -104,7 +104,7 @@ TEST_F(ColmapProgramTest, UnwritableLogIsNamed) {
               HasSubstr("x.log"));
 }
 
-TEST(ParseProgress, UnderstandsOldAndNewLines) {
+TEST(ParseProgress, ParsesOldAndNewLines) {
   const auto expect = [](const char* line, int done, int total) {
     const StepProgress progress = ParseProgress(line);
     EXPECT_EQ(progress.done, done) << line;

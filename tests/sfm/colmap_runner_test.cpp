@@ -55,7 +55,7 @@ TEST_F(ColmapRunner, OptionsReachThePrograms) {
   EXPECT_THAT(fake_.Calls()[1], HasSubstr("--SiftMatching.use_gpu 0"));
 }
 
-TEST_F(ColmapRunner, SmallPhotosAreEnlargedToFindFeatures) {
+TEST_F(ColmapRunner, SmallPhotosAreEnlargedForFeatures) {
   WritePhotos(6);
   WritePhoto(photos_.path() / "large.png", 1300, 10);
   fake_.Set("models", "0 7\n");
@@ -67,7 +67,7 @@ TEST_F(ColmapRunner, SmallPhotosAreEnlargedToFindFeatures) {
   EXPECT_THAT(fake_.Calls()[0], HasSubstr("--SiftExtraction.first_octave -1"));
 }
 
-TEST_F(ColmapRunner, NewerProgramsGetTheNewNames) {
+TEST_F(ColmapRunner, NewerProgramsGetTheNewOptionNames) {
   WritePhotos(6);
   fake_.Set("models", "0 6\n");
   fake_.Set("help",
@@ -94,29 +94,29 @@ TEST_F(ColmapRunner, FailingStepIsNamedWithReasonAndLogAndRunsAgainNextTime) {
   EXPECT_THAT(fake_.Commands(), ElementsAre("exhaustive_matcher", "mapper"));
 }
 
-TEST_F(ColmapRunner, FewRegisteredAreTriedAgainThenRefusedWithAdvice) {
+TEST_F(ColmapRunner, FewRegisteredAreMappedAgainThenRefusedWithAdvice) {
   options_.matcher = "exhaustive";
   WritePhotos(50);
   EXPECT_THAT(Error(), AllOf(HasSubstr("0 of 50"), HasSubstr("overlap"), HasSubstr("colmap/log")));
   EXPECT_THAT(fake_.Calls().back(), HasSubstr("--Mapper.init_min_num_inliers 50"));
   fs::remove_all(Workspace());
   fake_.Set("models", "0 3\n");
-  EXPECT_THAT(Error(), HasSubstr("registered 3 of 50 photographs, too few"));
+  EXPECT_THAT(Error(), HasSubstr("registered only 3 of 50 photographs"));
   fs::remove_all(Workspace());
   fake_.Set("models", "0 4\n");  // less than one in ten
-  EXPECT_THAT(Error(), HasSubstr("registered 4 of 50 photographs, too few"));
+  EXPECT_THAT(Error(), HasSubstr("registered only 4 of 50 photographs"));
 }
 
-TEST_F(ColmapRunner, MapperThatFailsForWantOfAModelIsNoOtherFailure) {
+TEST_F(ColmapRunner, MapperThatFindsNoModelIsNotAnotherFailure) {
   WritePhotos(6);
   fake_.Set("do_mapper", "echo 'ERROR: failed to create sparse model'; exit 1");
-  EXPECT_THAT(Error(), HasSubstr("registered 0 of 6"));
+  EXPECT_THAT(Error(), HasSubstr("registered only 0 of 6"));
   fs::remove_all(Workspace());
   fake_.Set("do_mapper", "echo 'ERROR: database is locked'; exit 1");
   EXPECT_THAT(Error(), AllOf(HasSubstr("mapper failed"), HasSubstr("database is locked")));
 }
 
-TEST_F(ColmapRunner, ModelWithMostImagesCounts) {
+TEST_F(ColmapRunner, ModelWithMostImagesIsTaken) {
   WritePhotos(10);
   fake_.Set("models", "0 2\n1 7\n2 3\n");
   EXPECT_EQ(Run().images.size(), 7u);
@@ -126,7 +126,7 @@ TEST_F(ColmapRunner, ModelWithMostImagesCounts) {
                                  HasSubstr("overlap")));
 }
 
-TEST_F(ColmapRunner, SecondAttemptCountsOnlyWhereItIsBetter) {
+TEST_F(ColmapRunner, SecondAttemptIsTakenOnlyWhereItIsBetter) {
   WritePhotos(10);
   fake_.Set("models", "0 4\n");
   fake_.Set("models_relaxed", "0 1\n1 9\n");
@@ -138,7 +138,7 @@ TEST_F(ColmapRunner, SecondAttemptCountsOnlyWhereItIsBetter) {
   EXPECT_THAT(log_.Text(), HasSubstr("lower thresholds"));
 }
 
-TEST_F(ColmapRunner, SecondCallDoesNothingAgainAndSaysSo) {
+TEST_F(ColmapRunner, SecondCallSkipsFinishedStepsWithAMessage) {
   WritePhotos(10);
   fake_.Set("models", "0 4\n");
   fake_.Set("models_relaxed", "0 4\n");
@@ -148,7 +148,7 @@ TEST_F(ColmapRunner, SecondCallDoesNothingAgainAndSaysSo) {
   EXPECT_EQ(Run().images.size(), 4u);
   EXPECT_THAT(fake_.Calls(), IsEmpty());
   EXPECT_EQ(report_.seconds, seconds);
-  EXPECT_THAT(log_.Text(), HasSubstr("features: done before"));
+  EXPECT_THAT(log_.Text(), HasSubstr("features: done already"));
 }
 
 TEST_F(ColmapRunner, ChangesRepeatTheStepsThatDependOnThem) {
@@ -184,11 +184,11 @@ TEST_F(ColmapRunner, MissingProgramLeavesNothingBehind) {
   EXPECT_FALSE(fs::exists(Workspace()));
 }
 
-TEST_F(ColmapRunner, OtherPeoplesFilesAreNotTouched) {
+TEST_F(ColmapRunner, OtherFilesAreNotTouched) {
   WritePhotos(6);
   fs::create_directories(Workspace() / "images");
   std::ofstream(Workspace() / "images/precious.jpg") << "x";
-  EXPECT_THAT(Error(), HasSubstr("not of an earlier run"));
+  EXPECT_THAT(Error(), HasSubstr("not from an earlier run"));
   EXPECT_TRUE(fs::exists(Workspace() / "images/precious.jpg"));
   EXPECT_THAT(fake_.Calls(), IsEmpty());
 }
@@ -205,7 +205,7 @@ TEST_F(ColmapRunner, UnreadablePhotosAreNamedSkippedAndCounted) {
   EXPECT_FALSE(fs::is_symlink(Workspace() / "images/p003.png"));
 }
 
-TEST_F(ColmapRunner, TurnedPhotosKeepTheirPathAndGetTheUprightCamera) {
+TEST_F(ColmapRunner, RotatedPhotosKeepTheirPathAndGetTheUprightCamera) {
   for (const char* name : {"a.jpg", "b.jpg", "c.jpg", "d.jpg"}) {
     WritePhoto(photos_.path() / name, 64, 48, 6);
   }
@@ -217,7 +217,7 @@ TEST_F(ColmapRunner, TurnedPhotosKeepTheirPathAndGetTheUprightCamera) {
   EXPECT_EQ(posed.cameras[posed.images[0].camera].width, 48);
 }
 
-TEST_F(ColmapRunner, SeveralSizesAndStandInsComeBackUnderTheirOwnNames) {
+TEST_F(ColmapRunner, SeveralSizesAndConvertedCopiesKeepTheirOriginalNames) {
   WritePhoto(photos_.path() / "a.jpg", 64, 48);
   WritePhoto(photos_.path() / "b.exr", 64, 48, 1, OIIO::TypeHalf);
   WritePhoto(photos_.path() / "c.png", 80, 48);
@@ -233,7 +233,7 @@ TEST_F(ColmapRunner, SeveralSizesAndStandInsComeBackUnderTheirOwnNames) {
   EXPECT_THAT(names, testing::UnorderedElementsAre("a.jpg", "b.exr", "c.png", "d.png"));
 }
 
-TEST(ColmapOptions, UnknownValuesAreNamedWithTheMend) {
+TEST(ColmapOptions, UnknownValuesAreNamedWithTheFix) {
   const auto error = [](auto change) {
     ColmapOptions options;
     change(options);

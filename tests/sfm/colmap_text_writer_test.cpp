@@ -10,7 +10,7 @@
 namespace nerf::sfm {
 namespace {
 
-TEST(ColmapText, ComesBack) {
+TEST(ColmapText, IsReadBack) {
   const nerf::test::ScratchFolder folder;
   nerf::synthetic::SampleOptions options;
   options.views = 6;

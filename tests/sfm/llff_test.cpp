@@ -81,7 +81,7 @@ TEST_F(Llff, NumbersOfImagesAndPosesMustAgree) {
   WritePoses(TwoPoses());
   WriteImages("images", 40, 30);
   scratch_.WriteImage("images/c.ppm", 40, 30);
-  EXPECT_THAT(ReadError(), HasSubstr("holds 2 poses, but"));
+  EXPECT_THAT(ReadError(), HasSubstr("has 2 poses, but"));
   EXPECT_THAT(ReadError(), HasSubstr("has 3 images"));
 }
 
@@ -94,7 +94,7 @@ TEST_F(Llff, UnreadableImageIsNamed) {
   EXPECT_EQ(posed.images.size(), 1u);
 }
 
-TEST_F(Llff, BrokenRowsAreRefusedByImage) {
+TEST_F(Llff, InvalidRowsAreRefusedByImage) {
   WriteImages("images", 40, 30);
   const auto error_with = [&](int column, double value) {
     xt::xarray<double> poses = TwoPoses();
@@ -105,19 +105,20 @@ TEST_F(Llff, BrokenRowsAreRefusedByImage) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(error_with(3, nan), HasSubstr("row 1 (b.ppm): an entry is not finite"));
   EXPECT_THAT(error_with(2, 1), HasSubstr("row 1 (b.ppm): not a rigid motion"));
-  EXPECT_THAT(error_with(14, 0), HasSubstr("row 1 (b.ppm): height 30, width 40, focal length 0"));
+  EXPECT_THAT(error_with(14, 0),
+              HasSubstr("row 1 (b.ppm): height 30, width 40 and focal length 0"));
   EXPECT_THAT(error_with(9, nan), HasSubstr("width nan"));
   EXPECT_THAT(error_with(15, -1), HasSubstr("nearest depth -1"));
-  EXPECT_THAT(error_with(16, nan), HasSubstr("farthest nan"));
+  EXPECT_THAT(error_with(16, nan), HasSubstr("farthest depth nan"));
   EXPECT_THAT(error_with(9, 41), HasSubstr("no scaled copy"));
 }
 
-TEST_F(Llff, FileCutAtAnyByteIsRefused) {
+TEST_F(Llff, FileTruncatedAtAnyByteIsRefused) {
   WriteImages("images", 40, 30);
   const std::string whole = xt::dump_npy(TwoPoses());
   for (std::size_t length = 0; length < whole.size(); ++length) {
     WritePoses(whole.substr(0, length));
-    ASSERT_THAT(ReadError(), HasSubstr("not a whole NumPy array")) << length;
+    ASSERT_THAT(ReadError(), HasSubstr("not a complete NumPy array")) << length;
   }
 }
 
@@ -134,10 +135,10 @@ TEST_F(Llff, HostileHeadersAreRefused) {
         replaced("(2, 17)", "(99999999999999999999999, 17)"), replaced("\x01", "\x02"),
         replaced("\x93", "\x92")}) {
     WritePoses(bytes);
-    EXPECT_THAT(ReadError(), HasSubstr("not a whole NumPy array"));
+    EXPECT_THAT(ReadError(), HasSubstr("not a complete NumPy array"));
   }
   WritePoses(xt::dump_npy(xt::xarray<double>(xt::xarray<double>::shape_type{0, 17})));
-  EXPECT_THAT(ReadError(), HasSubstr("holds no poses"));
+  EXPECT_THAT(ReadError(), HasSubstr("contains no poses"));
 }
 
 TEST_F(Llff, FolderWithoutImagesIsRefused) {

@@ -33,7 +33,7 @@ std::vector<std::string> SkippedNames(const PhotoFolder& folder) {
   return names;
 }
 
-TEST(PhotoFolder, PhotosAreSortedByNameAndOtherFilesLeftOut) {
+TEST(PhotoFolder, PhotosAreSortedByNameAndOtherFilesIgnored) {
   const ScratchFolder scratch;
   WritePhoto(scratch.path() / "b.JPG", 20, 10);
   WritePhoto(scratch.path() / "a.png", 20, 10);
@@ -49,7 +49,7 @@ TEST(PhotoFolder, PhotosAreSortedByNameAndOtherFilesLeftOut) {
   EXPECT_EQ(folder.photos[1].height, 10);
 }
 
-TEST(PhotoFolder, JpegOfTheFoxCutAnywhereIsFound) {
+TEST(PhotoFolder, JpegOfTheFoxTruncatedAnywhereIsSkipped) {
   const ScratchFolder scratch;
   const std::string whole = FoxBytes();
   ASSERT_GT(whole.size(), 100000u);
@@ -65,17 +65,17 @@ TEST(PhotoFolder, JpegOfTheFoxCutAnywhereIsFound) {
   const PhotoFolder folder = CheckPhotos(ListPhotos(scratch.path()));
   EXPECT_THAT(Names(folder), ElementsAre("good1.jpg", "good2.jpg"));
   EXPECT_EQ(SkippedNames(folder), cut);
-  EXPECT_EQ(folder.skipped[3].reason, "is cut short");
+  EXPECT_EQ(folder.skipped[3].reason, "truncated");
 }
 
-TEST(PhotoFolder, WhatAPhoneAppendsToTheFoxsJpegIsNoFault) {
+TEST(PhotoFolder, DataThatAPhoneAppendsToTheFoxsJpegIsIgnored) {
   const ScratchFolder scratch;
   scratch.Write("motion.jpg", FoxBytes() + std::string(5000, 'v'));
   scratch.Write("plain.jpg", FoxBytes());
   EXPECT_TRUE(CheckPhotos(ListPhotos(scratch.path())).skipped.empty());
 }
 
-TEST(PhotoFolder, OtherFormatsCutShortOrForeignAreFoundToo) {
+TEST(PhotoFolder, TruncatedAndForeignFilesOfOtherFormatsAreSkipped) {
   const ScratchFolder scratch;
   WritePhoto(scratch.path() / "good1.png", 64, 64);
   WritePhoto(scratch.path() / "good2.tif", 64, 64);
@@ -91,7 +91,7 @@ TEST(PhotoFolder, OtherFormatsCutShortOrForeignAreFoundToo) {
               ElementsAre("cut.bmp", "cut.exr", "cut.png", "cut.ppm", "cut.tif", "text.png"));
 }
 
-TEST(PhotoFolder, HeaderThatClaimsAbsurdSizeIsNotBelieved) {
+TEST(PhotoFolder, HeaderWithAnAbsurdSizeIsRefused) {
   const ScratchFolder scratch;
   scratch.WriteImage("a.ppm", 8, 8);
   scratch.WriteImage("b.ppm", 8, 8);
@@ -115,7 +115,7 @@ TEST(PhotoFolder, OrientationAndDepthAreRead) {
   EXPECT_FALSE(photos[2].eight_bit);
 }
 
-TEST(PhotoFolder, UnusableFoldersAreNamedWithTheMend) {
+TEST(PhotoFolder, UnusableFoldersAreNamedWithTheFix) {
   const ScratchFolder scratch;
   const auto error = [](const fs::path& folder) {
     return InputErrorOf([&] { ListPhotos(folder); });
@@ -123,10 +123,10 @@ TEST(PhotoFolder, UnusableFoldersAreNamedWithTheMend) {
   EXPECT_THAT(error(scratch.path() / "absent"), AllOf(HasSubstr("absent"), HasSubstr("no such")));
   EXPECT_THAT(error(scratch.Write("file.jpg", "x")), HasSubstr("is a file"));
   fs::create_directory(scratch.path() / "empty");
-  EXPECT_THAT(error(scratch.path() / "empty"), HasSubstr("holds no photographs; give"));
+  EXPECT_THAT(error(scratch.path() / "empty"), HasSubstr("contains no photographs; give"));
   scratch.Write("phone/a.MOV", "x");
   EXPECT_THAT(error(scratch.path() / "phone"), HasSubstr("(but .MOV files)"));
-  EXPECT_THAT(error(scratch.path()), HasSubstr("holds one photograph, file.jpg"));
+  EXPECT_THAT(error(scratch.path()), HasSubstr("contains only one photograph, file.jpg"));
 }
 
 TEST(PhotoFolder, FewerThanTwoReadableIsAnErrorWithTheCount) {

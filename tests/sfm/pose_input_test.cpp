@@ -71,26 +71,26 @@ TEST_F(PoseInput, LargestSubModelIsTaken) {
   EXPECT_EQ(ReadPosedInput(FindInput(scratch_.path() / "p")).images.size(), 3u);
 }
 
-TEST_F(PoseInput, PhotographsOfAModelAreWhereMostOfItsNamesAre) {
+TEST_F(PoseInput, PhotographsOfAModelAreInTheFolderWithMostOfItsNames) {
   WriteModel("p/sparse");
   WritePhotos("p");
   scratch_.WriteImage("p/images/c.ppm", 12, 8);
   ExpectFound("p", InputKind::kColmap, "p/sparse", "p");
   WriteModel("q");
-  EXPECT_THAT(FindError("q"), HasSubstr("none of the 3 images of this COLMAP model is there"));
+  EXPECT_THAT(FindError("q"), HasSubstr("none of the 3 images of this COLMAP model was found"));
   WritePhotos("images");
   ExpectFound("q", InputKind::kColmap, "q", "images");
 }
 
-TEST_F(PoseInput, WhatIsNoInputIsExplained) {
+TEST_F(PoseInput, InvalidInputsAreExplained) {
   EXPECT_THAT(FindError("absent"), HasSubstr("absent: no such file or folder"));
   scratch_.Write("notes.txt", "x");
   EXPECT_THAT(FindError("notes.txt"), HasSubstr("not an input"));
-  EXPECT_THAT(FindError(""), HasSubstr("looked for transforms.json"));
+  EXPECT_THAT(FindError(""), HasSubstr("neither transforms.json"));
   EXPECT_THAT(InputErrorOf([&] {
                 ReadPosedInput({InputKind::kPhotos, {}, "photos"});
               }),
-              HasSubstr("photos: plain photographs have no poses"));
+              HasSubstr("photos: photographs without poses"));
 }
 
 TEST_F(PoseInput, RelativeInputsAreFound) {

@@ -37,7 +37,7 @@ TEST(StepLedger, StatesSurviveInTheFile) {
   EXPECT_EQ(ledger.Seconds("matches"), 0);
 }
 
-TEST(StepLedger, BeginningAStepForgetsThoseAfterIt) {
+TEST(StepLedger, BeginningAStepRemovesThoseAfterIt) {
   const ScratchFolder scratch;
   StepLedger ledger(scratch.path() / "steps.json");
   for (const char* step : {"features", "matches", "mapper"}) {
@@ -50,7 +50,7 @@ TEST(StepLedger, BeginningAStepForgetsThoseAfterIt) {
   EXPECT_EQ(ledger.StateOf("mapper", 1), State::kNew);
 }
 
-TEST(StepLedger, DamagedFileCountsAsNothingDone) {
+TEST(StepLedger, DamagedFileCountsAsNoStepDone) {
   const ScratchFolder scratch;
   StepLedger whole(scratch.path() / "steps.json");
   whole.Begin("features", 1);
@@ -64,7 +64,7 @@ TEST(StepLedger, DamagedFileCountsAsNothingDone) {
   }
 }
 
-TEST(StepLedger, NamesThatAreNoUtf8CanBeWritten) {
+TEST(StepLedger, NamesInInvalidUtf8CanBeWritten) {
   const ScratchFolder scratch;
   StepLedger ledger(scratch.path() / "steps.json");
   ledger.Begin("images", {"caf\xe9.jpg"});

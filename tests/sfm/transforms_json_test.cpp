@@ -77,7 +77,7 @@ TEST_F(TransformsJson, FramesAreSortedAndShareOneCamera) {
   EXPECT_THAT(posed.cameras, ElementsAre(Camera{CameraModel::kPinhole, 20, 10, {30, 31, 10, 5}}));
 }
 
-TEST_F(TransformsJson, ModelIsTheSimplestThatSaysTheSame) {
+TEST_F(TransformsJson, ModelIsTheSimplestThatIsEquivalent) {
   const std::vector<double> pinhole = {30, 31, 9, 4};
   const auto with = [&](std::vector<double> more) {
     more.insert(more.begin(), pinhole.begin(), pinhole.end());
@@ -100,7 +100,7 @@ TEST_F(TransformsJson, ModelIsTheSimplestThatSaysTheSame) {
          with({0.9}));
 }
 
-TEST_F(TransformsJson, AnglesGiveTheFocalLength) {
+TEST_F(TransformsJson, FieldsOfViewGiveTheFocalLength) {
   json root = TwoFrames();
   for (const char* key : {"fl_x", "fl_y", "w", "h"}) root.erase(key);
   root["camera_angle_x"] = 2 * std::atan(0.5);
@@ -143,10 +143,10 @@ TEST_F(TransformsJson, MissingImagesAreCountedAndNamed) {
   EXPECT_THAT(posed.missing, ElementsAre("images/b.ppm (not a readable image)", "images/lost.ppm"));
   EXPECT_EQ(posed.images.size(), 1u);
   fs::remove_all(scratch_.path() / "images");
-  EXPECT_THAT(ReadError(root), HasSubstr("none of the 3 images that it names is there"));
+  EXPECT_THAT(ReadError(root), HasSubstr("none of its 3 images was found"));
 }
 
-TEST_F(TransformsJson, NerfstudioListsMarkSplitsAndTrainingWins) {
+TEST_F(TransformsJson, NerfstudioListsMarkSplitsAndTrainingHasPrecedence) {
   json root = TwoFrames();
   root["train_filenames"] = {"./images/a.ppm"};
   root["val_filenames"] = {"images/a.ppm", "images/b.ppm"};
@@ -157,12 +157,13 @@ TEST_F(TransformsJson, NerfstudioListsMarkSplitsAndTrainingWins) {
   posed = Read(root);
   EXPECT_EQ(posed.images[1].split, Split::kTest);
   root["test_filenames"] = {"images/c.ppm"};
-  EXPECT_THAT(ReadError(root), HasSubstr("test_filenames: 'images/c.ppm' is the file_path of no"));
+  EXPECT_THAT(ReadError(root),
+              HasSubstr("test_filenames: no frame has the file_path 'images/c.ppm'"));
   root["test_filenames"] = 3;
   EXPECT_THAT(ReadError(root), HasSubstr("test_filenames must be a list"));
 }
 
-TEST_F(TransformsJson, BlenderFilesOfTheOtherSplitsComeAlong) {
+TEST_F(TransformsJson, BlenderFilesOfTheOtherSplitsAreReadToo) {
   for (const char* name : {"train/r_0.png", "val/r_0.png", "test/r_0.png"}) {
     scratch_.WriteImage(name, 8, 8);
   }
@@ -202,7 +203,7 @@ TEST_F(TransformsJson, FoxHasFiftyOfItsImages) {
       Eigen::Vector3d(-0.44209, 0.894069, 0.0720918), 1e-5));
 }
 
-TEST_F(TransformsJson, ChairBringsItsTestViewsAlong) {
+TEST_F(TransformsJson, ChairIncludesItsTestViews) {
   const PosedImages posed = ReadTransformsJson(NERF_TEST_DATA "/chair/transforms_train.json");
   const auto count = [&](Split split) {
     return std::count_if(posed.images.begin(), posed.images.end(),
@@ -215,7 +216,7 @@ TEST_F(TransformsJson, ChairBringsItsTestViewsAlong) {
   EXPECT_NEAR(posed.cameras[0].params[0], 555.5555, 1e-3);
 }
 
-TEST_F(TransformsJson, BrokenFramesAreRefusedByIndexAndKey) {
+TEST_F(TransformsJson, InvalidFramesAreRefusedByIndexAndKey) {
   const auto error_with = [&](const std::string& pointer, const json& value) {
     json root = TwoFrames();
     root[json::json_pointer(pointer)] = value;
@@ -232,7 +233,8 @@ TEST_F(TransformsJson, BrokenFramesAreRefusedByIndexAndKey) {
   EXPECT_THAT(error_with("/frames/1", json::object()), HasSubstr("frames[1].file_path is missing"));
   EXPECT_THAT(error_with("/frames/1", 5), HasSubstr("frames[1]: must be an object"));
   EXPECT_THAT(error_with("/frames/1/file_path", 5), HasSubstr("frames[1].file_path must be a str"));
-  EXPECT_THAT(error_with("/frames/1/file_path", "images/b.ppm"), HasSubstr("is that of frames[0]"));
+  EXPECT_THAT(error_with("/frames/1/file_path", "images/b.ppm"),
+              HasSubstr("is also that of frames[0]"));
   EXPECT_THAT(error_with("/frames/1/fl_x", "wide"), HasSubstr("frames[1].fl_x must be a finite"));
   EXPECT_THAT(error_with("/frames/1/fl_x", -3), HasSubstr("frames[1].fl_x must be positive"));
   EXPECT_THAT(error_with("/frames", json::array()), HasSubstr("frames is missing or empty"));
@@ -275,7 +277,7 @@ TEST_F(TransformsJson, NonFiniteNumbersAsPythonWritesThemAreNamed) {
   EXPECT_EQ(Read(root).images[0].name, "NaN \"Infinity\".ppm");
 }
 
-TEST_F(TransformsJson, FileCutAtAnyByteIsRefused) {
+TEST_F(TransformsJson, FileTruncatedAtAnyByteIsRefused) {
   const std::string whole = TwoFrames().dump();
   for (std::size_t length = 0; length < whole.size(); ++length) {
     ASSERT_THAT(ReadError(whole.substr(0, length)), HasSubstr("transforms.json: parse error"));

@@ -37,7 +37,7 @@ PosedImages PosedWith(const std::vector<Camera>& cameras, const ScratchFolder& s
   return posed;
 }
 
-TEST(TransformsJsonWriter, EveryCameraModelSplitAndPoseSurvivesTheRoundTrip) {
+TEST(TransformsJsonWriter, EveryCameraModelSplitAndPoseIsRestored) {
   const ScratchFolder scratch;
   std::vector<Camera> cameras;
   for (int id = 0; id < kNumCameraModels; ++id) {
@@ -66,7 +66,7 @@ TEST(TransformsJsonWriter, EveryCameraModelSplitAndPoseSurvivesTheRoundTrip) {
     EXPECT_EQ(FocalLengths(after), FocalLengths(before));
     EXPECT_EQ(PrincipalPoint(after), PrincipalPoint(before));
     EXPECT_EQ(after.width, before.width);
-    // What models have in common comes in one order; the richer model has zeros behind.
+    // The models share the order of their common parameters; the larger model ends in zeros.
     std::vector<double> distortion(before.params.begin() + FirstDistortionParam(before.model),
                                    before.params.end());
     const int first = FirstDistortionParam(after.model);
@@ -101,8 +101,8 @@ TEST(TransformsJsonWriter, OneCameraIsWrittenOnceAndPathsAreRelative) {
   EXPECT_EQ(ReadTransformsJson(file).cameras, posed.cameras);
 }
 
-// Of a square photograph, or one that stands on its head, the size cannot tell.
-TEST(TransformsJsonWriter, APhotographTurnedByExifStaysTurned) {
+// The size of a square photograph, or of one rotated by 180 degrees, does not show the rotation.
+TEST(TransformsJsonWriter, APhotographRotatedByExifStaysRotated) {
   const ScratchFolder scratch;
   PosedImages posed = PosedWith({{CameraModel::kPinhole, 8, 8, {9, 9, 4, 4}}}, scratch);
   for (const bool upright_by_exif : {true, false}) {
@@ -113,7 +113,7 @@ TEST(TransformsJsonWriter, APhotographTurnedByExifStaysTurned) {
   }
 }
 
-TEST(TransformsJsonWriter, UnwritableFolderIsNamedAndNothingIsLeft) {
+TEST(TransformsJsonWriter, UnwritableFolderIsNamedAndNoFileIsLeft) {
   const ScratchFolder scratch;
   const PosedImages posed = PosedWith({{CameraModel::kSimplePinhole, 4, 4, {1, 2, 2}}}, scratch);
   const fs::path file = scratch.path() / "absent/transforms.json";

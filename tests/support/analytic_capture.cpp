@@ -55,7 +55,7 @@ double PsnrOver(const Model& model, const std::vector<View>& views) {
   double sum = 0;
   std::int64_t count = 0;
   for (const View& view : views) {
-    std::vector<std::int64_t> pixels(view.Held());
+    std::vector<std::int64_t> pixels(view.StoredCount());
     std::iota(pixels.begin(), pixels.end(), 0);
     const ViewRays rays =
         RaysOfPixels(view.camera, view.normalized_from_camera, pixels, Eigen::Vector3f::Zero());

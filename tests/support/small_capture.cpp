@@ -1,6 +1,7 @@
 #include "tests/support/small_capture.h"
 
 #include "nerf/scene/scene_normalization.h"
+#include "nerf/scene/splits.h"
 
 namespace nerf::test {
 

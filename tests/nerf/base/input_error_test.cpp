@@ -6,13 +6,13 @@
 namespace nerf {
 namespace {
 
-TEST(InputError, StaysOnOneLineWhateverTheNamesInIt) {
+TEST(InputError, IsOneLineWhateverTheNamesInIt) {
   EXPECT_STREQ(InputError("a.json: key {} is unknown", "x\ny\x1b[31m").what(),
                "a.json: key x y [31m is unknown");
   EXPECT_STREQ(InputError(std::string("two\r\nlines")).what(), "two  lines");
 }
 
-TEST(InputError, KeepsUtf8AndCutsWhatNobodyReads) {
+TEST(InputError, KeepsUtf8AndShortensLongMessages) {
   EXPECT_STREQ(InputError("Füchse/{}", "ä.jpg").what(), "Füchse/ä.jpg");
   EXPECT_STREQ(InputError("a\xc2\x9b[31m").what(), "a  [31m");
   std::string name;

@@ -20,7 +20,7 @@ class TemporaryFileTest : public testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("nerf_temporary_" + std::to_string(::getpid()));
 };
 
-TEST_F(TemporaryFileTest, VanishesUnlessItIsKept) {
+TEST_F(TemporaryFileTest, IsRemovedUnlessItIsKept) {
   {
     const TemporaryFile file(folder_ / "a.b.png");
     EXPECT_EQ(file.path().extension(), ".png");
@@ -30,7 +30,7 @@ TEST_F(TemporaryFileTest, VanishesUnlessItIsKept) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(TemporaryFileTest, TakesThePlaceOfTheOldFileWhenKept) {
+TEST_F(TemporaryFileTest, ReplacesTheOldFileWhenKept) {
   std::ofstream(folder_ / "a.txt") << "old";
   {
     TemporaryFile file(folder_ / "a.txt");
@@ -43,15 +43,15 @@ TEST_F(TemporaryFileTest, TakesThePlaceOfTheOldFileWhenKept) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
-TEST_F(TemporaryFileTest, TwoWritersOfOneFileDoNotMeet) {
+TEST_F(TemporaryFileTest, TwoWritersOfOneFileDoNotInterfere) {
   EXPECT_NE(TemporaryFile(folder_ / "a").path(), TemporaryFile(folder_ / "a").path());
 }
 
-TEST_F(TemporaryFileTest, NeedsItsFolder) {
+TEST_F(TemporaryFileTest, RefusesAMissingFolder) {
   EXPECT_THROW(TemporaryFile(folder_ / "none" / "a.txt"), InputError);
 }
 
-TEST_F(TemporaryFileTest, SaysSoWhereThereIsNothingToKeep) {
+TEST_F(TemporaryFileTest, ThrowsWhereThereIsNothingToKeep) {
   TemporaryFile file(folder_ / "a.txt");
   EXPECT_THROW(file.Keep(), InputError);
 }

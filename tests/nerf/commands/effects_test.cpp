@@ -85,7 +85,7 @@ TEST_F(EffectsCommands, InspectOfPhotographsAloneTellsWhatTheyTell) {
   const auto seen = RunNerf("inspect " + Path("masks/images"));
   EXPECT_EQ(seen.exit_status, 0) << seen.output;
   EXPECT_THAT(seen.output, AllOf(HasSubstr("17 of 17 photographs have one"),
-                                 HasSubstr("no poses yet"), HasSubstr("nerf poses")));
+                                 HasSubstr("without poses"), HasSubstr("nerf poses")));
 }
 
 TEST_F(EffectsCommands, InspectDrawsAPictureWhereItIsToldTo) {

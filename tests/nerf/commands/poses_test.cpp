@@ -70,7 +70,7 @@ TEST_F(PosesCommand, DoesNotOverwritePosesThatItDidNotMake) {
   out_.Write("transforms.json", "precious");
   const Said said = RunPoses(Arguments());
   EXPECT_EQ(said.status, 2);
-  EXPECT_THAT(said.text, HasSubstr("transforms.json: is there already"));
+  EXPECT_THAT(said.text, HasSubstr("transforms.json: exists already"));
   EXPECT_EQ(test::FileBytes(out_.path() / "transforms.json"), "precious");
 }
 

@@ -58,7 +58,7 @@ class TrialsCommands : public testing::Test {
     std::vector<std::string> tried;
     for (const auto& verdict : verdicts) {
       const std::string evidence = verdict.at("evidence");
-      if (evidence.find("tried: ") == std::string::npos) continue;
+      if (evidence.find("trial: ") == std::string::npos) continue;
       tried.push_back(verdict.at("effect"));
       EXPECT_TRUE(verdict.at("decided"));
       EXPECT_EQ(verdict.at("on"), !effects.at(verdict.at("effect")).is_null());

@@ -148,18 +148,18 @@ TEST(Inspect, WithoutSparsePointsOnlyFactsAreDecided) {
   EXPECT_FALSE(decided.at("exposure"));
 }
 
-TEST(Verdict, IsSureFarFromItsThreshold) {
+TEST(Verdict, HasConfidenceFarFromItsThreshold) {
   Verdict verdict;
   verdict.decided = true;
   verdict.threshold = 0.1;
   verdict.figure = 0.1;
-  EXPECT_EQ(verdict.Sure(), 0);
+  EXPECT_EQ(verdict.Confidence(), 0);
   verdict.figure = 0.2;
-  EXPECT_EQ(verdict.Sure(), 1);
+  EXPECT_EQ(verdict.Confidence(), 1);
   verdict.figure = 0.01;
-  EXPECT_EQ(verdict.Sure(), 1);
+  EXPECT_EQ(verdict.Confidence(), 1);
   verdict.decided = false;
-  EXPECT_EQ(verdict.Sure(), 0);
+  EXPECT_EQ(verdict.Confidence(), 0);
 }
 
 }  // namespace

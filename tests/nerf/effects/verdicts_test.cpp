@@ -81,7 +81,7 @@ TEST(GeometryVerdicts, ThatNeedTracksAreUndecidedWithoutThem) {
     EXPECT_FALSE(verdict.decided);
     EXPECT_FALSE(verdict.on);
     EXPECT_EQ(verdict.assignment, "");
-    EXPECT_EQ(verdict.Sure(), 0);
+    EXPECT_EQ(verdict.Confidence(), 0);
   }
 }
 

@@ -35,7 +35,7 @@ class Exif : public testing::Test {
   test::ScratchFolder folder_;
 };
 
-TEST_F(Exif, TellsTheLightThatTheSensorTookIn) {
+TEST_F(Exif, GivesTheLightOnTheSensor) {
   const auto one = Read({{"ExposureTime", 0.01f}, {"FNumber", 2.0f}});
   const auto two = Read({{"ExposureTime", 0.02f}, {"FNumber", 4.0f}});
   ASSERT_TRUE(one && two);
@@ -50,7 +50,7 @@ TEST_F(Exif, OfAFileWithoutItIsUnknown) {
   EXPECT_FALSE(ReadExifExposure(folder_.path() / "none.jpg"));
 }
 
-TEST_F(Exif, ThatContradictsItselfIsNamed) {
+TEST_F(Exif, ThatContradictsItselfIsReported) {
   // 1/100 s, and 2^-2 s.
   const auto both = Read({{"ExposureTime", 0.01f}, {"Exif:ShutterSpeedValue", 2.0f}});
   ASSERT_TRUE(both);

@@ -17,7 +17,7 @@ Image Make(int width, int height, int channels, ColorEncoding encoding,
   return image;
 }
 
-TEST(ImageConvert, GoesToLinearLightAndBackAndLeavesAlpha) {
+TEST(ImageConvert, ConvertsToLinearAndBackAndKeepsAlpha) {
   const Image srgb = Make(1, 1, 4, ColorEncoding::kSrgb, {0.5f, 0.02f, 1.0f, 0.5f});
   const Image linear = ToLinear(srgb);
   EXPECT_EQ(linear.encoding, ColorEncoding::kLinear);
@@ -29,7 +29,7 @@ TEST(ImageConvert, GoesToLinearLightAndBackAndLeavesAlpha) {
   EXPECT_EQ(ToSrgb(srgb).pixels, srgb.pixels);
 }
 
-TEST(OnWhite, MixesSrgbValues) {
+TEST(OnWhite, CompositesInSrgb) {
   const Image image =
       OnWhite(Make(2, 1, 4, ColorEncoding::kSrgb, {0.2f, 0.4f, 0, 0.25f, 0.1f, 0.2f, 0.3f, 1}));
   ASSERT_EQ(image.channels, 3);
@@ -37,7 +37,7 @@ TEST(OnWhite, MixesSrgbValues) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(image.pixels[i], expected[i], 1e-6);
 }
 
-TEST(OnWhite, TransfersLinearImagesBeforeItMixes) {
+TEST(OnWhite, ConvertsLinearImagesBeforeCompositing) {
   const Image image = OnWhite(Make(1, 1, 4, ColorEncoding::kLinear, {0.2140411f, 0, 1, 0.5f}));
   EXPECT_EQ(image.encoding, ColorEncoding::kSrgb);
   EXPECT_NEAR(image.pixels[0], 0.75, 1e-5);
@@ -59,7 +59,15 @@ TEST(Downscale, AveragesLightAndNotSrgbValues) {
   EXPECT_NEAR(small.pixels[0], 0.7353569, 1e-5);
 }
 
-TEST(Downscale, ColoursCountByTheirAlpha) {
+TEST(Downscale, KeepsAConstantColour) {
+  for (const ColorEncoding encoding : {ColorEncoding::kSrgb, ColorEncoding::kLinear}) {
+    const Image small = Downscale(Make(2, 2, 3, encoding, std::vector<float>(12, 0.4f)), 2);
+    EXPECT_EQ(small.encoding, encoding);
+    for (const float value : small.pixels) EXPECT_NEAR(value, 0.4f, 1e-6);
+  }
+}
+
+TEST(Downscale, ColoursAreWeightedByTheirAlpha) {
   const Image small = Downscale(
       Make(2, 2, 4, ColorEncoding::kLinear, {1, 0, 0, 1, 0, 1, 0, 0.5f, 0, 0, 9, 0, 0, 0, 9, 0}),
       2);

@@ -11,12 +11,12 @@ namespace {
 
 using nerf::test::ScratchFolder;
 
-TEST(ImageFiles, EndingsAreKnownInUpperAndLowerCase) {
+TEST(ImageFiles, ExtensionsAreKnownInUpperAndLowerCase) {
   for (const char* name : {"a.jpg", "a.JPEG", "a.Png", "b/c.TIFF", "x.exr", "x.y.webp"}) {
-    EXPECT_TRUE(HasImageEnding(name)) << name;
+    EXPECT_TRUE(HasImageExtension(name)) << name;
   }
   for (const char* name : {"jpg", "a.json", "a.mp4", "png.txt", ""}) {
-    EXPECT_FALSE(HasImageEnding(name)) << name;
+    EXPECT_FALSE(HasImageExtension(name)) << name;
   }
 }
 
@@ -29,7 +29,7 @@ TEST(ImageFiles, AreListedByNameWithoutFoldersAndHiddenFiles) {
   EXPECT_TRUE(ImageFilesIn(scratch.path() / "absent").empty());
 }
 
-TEST(ImageFiles, SizeIsAsStoredWithTheOrientationBeside) {
+TEST(ImageFiles, SizeIsAsStoredWithTheOrientation) {
   const ScratchFolder scratch;
   const auto file = scratch.path() / "turned.tif";
   OIIO::ImageSpec spec(7, 5, 1, OIIO::TypeUInt8);
@@ -46,7 +46,7 @@ TEST(ImageFiles, SizeIsAsStoredWithTheOrientationBeside) {
   EXPECT_EQ(size->orientation, 6);
 }
 
-TEST(ImageFiles, WhatIsNoImageHasNoSize) {
+TEST(ImageFiles, OtherFilesHaveNoSize) {
   const ScratchFolder scratch;
   EXPECT_FALSE(ReadImageSize(scratch.Write("empty.jpg", "")));
   EXPECT_FALSE(ReadImageSize(scratch.Write("text.png", "hello")));

@@ -54,7 +54,7 @@ TEST(Psnr, OfEqualImagesIsInfinite) {
   EXPECT_EQ(Psnr(Noise(5, 5, 1), Noise(5, 5, 1)), std::numeric_limits<double>::infinity());
 }
 
-TEST(Psnr, ComparesWhatAnEightBitFileWouldHold) {
+TEST(Psnr, ComparesEightBitValues) {
   EXPECT_TRUE(std::isinf(Psnr(Flat(3, 3, 0.5001f), Flat(3, 3, 0.5f))));
   EXPECT_TRUE(std::isinf(Psnr(Flat(3, 3, 1.7f), Flat(3, 3, 1.0f))));
   EXPECT_TRUE(std::isinf(Psnr(Flat(3, 3, -0.2f), Flat(3, 3, 0.0f))));
@@ -67,7 +67,7 @@ TEST(Psnr, LinearImagesAreComparedInSrgb) {
   EXPECT_TRUE(std::isinf(Psnr(linear, Flat(2, 2, 0.6f))));
 }
 
-TEST(Psnr, AlphaIsLaidOverWhiteInSrgbValues) {
+TEST(Psnr, AlphaIsCompositedOnWhiteInSrgb) {
   Image image(1, 1, 4);
   image.pixels = {0.2f, 0.4f, 0.6f, 0.5f};
   Image expected(1, 1, 3);
@@ -92,7 +92,7 @@ TEST(Ssim, OfEqualImagesIsOneAndFallsWithNoise) {
   EXPECT_LT(Ssim(truth, Smooth(40, 30, 0.1f)), 0.999);
 }
 
-TEST(Ssim, OfFlatImagesDependsOnTheirMeansAlone) {
+TEST(Ssim, OfConstantImagesDependsOnlyOnTheirMeans) {
   const double a = 51 / 255.0;
   const double b = 204 / 255.0;
   EXPECT_NEAR(Ssim(Flat(11, 11, 0.2f), Flat(11, 11, 0.8f)),

@@ -28,7 +28,7 @@ void WriteGrey(const fs::path& file, T value) {
   ASSERT_TRUE(output->write_image(spec.format, values.data()));
 }
 
-TEST(LinearImage, OfSixteenBitsIsLinearUnlessItIsSaidToBeSrgb) {
+TEST(LinearImage, OfSixteenBitsIsLinearUnlessSetToSrgb) {
   const test::ScratchFolder scratch;
   const fs::path file = scratch.path() / "deep.png";
   WriteGrey<std::uint16_t>(file, 16384);
@@ -39,7 +39,7 @@ TEST(LinearImage, OfSixteenBitsIsLinearUnlessItIsSaidToBeSrgb) {
   EXPECT_NEAR(ReadLinearImage(file, InputEncoding::kSrgb).pixels[0], LinearFromSrgb(0.25f), 1e-4);
 }
 
-TEST(LinearImage, OfEightBitsIsSrgbUnlessItIsSaidToBeLinear) {
+TEST(LinearImage, OfEightBitsIsSrgbUnlessSetToLinear) {
   const test::ScratchFolder scratch;
   const fs::path file = scratch.path() / "photo.png";
   WriteGrey<std::uint8_t>(file, 51);
@@ -48,7 +48,7 @@ TEST(LinearImage, OfEightBitsIsSrgbUnlessItIsSaidToBeLinear) {
   EXPECT_NEAR(ReadLinearImage(file, InputEncoding::kLinear).pixels[0], 0.2, 1e-6);
 }
 
-TEST(LinearImage, OfFloatsIsLinearAndHasNoLargestValue) {
+TEST(LinearImage, OfFloatsIsLinearAndDoesNotClip) {
   const test::ScratchFolder scratch;
   const fs::path file = scratch.path() / "measured.exr";
   WriteGrey<float>(file, 7.5f);
@@ -58,8 +58,8 @@ TEST(LinearImage, OfFloatsIsLinearAndHasNoLargestValue) {
   }
 }
 
-// A sensor counts light; its decoder's picture is for looking at.
-TEST(LinearImage, OfACamerasRawFileIsWhatItsSensorCounted) {
+// The sensor signal is linear; the decoder applies the sRGB curve for display.
+TEST(LinearImage, OfCameraRawIsTheLinearSensorSignal) {
   const test::ScratchFolder scratch;
   for (const int count : {1311, 16384, 32768}) {
     const fs::path file = scratch.Write("grey.dng", test::TinyDng(64, 64, [&](int, int) {

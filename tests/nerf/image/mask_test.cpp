@@ -22,7 +22,7 @@ Image Square(int width, int height) {
   return mask;
 }
 
-TEST(Mask, AnyPixelThatIsNotBlackIsLeft) {
+TEST(Mask, KeepsEveryPixelThatIsNotBlack) {
   const test::ScratchFolder folder;
   WriteImage(folder.path() / "mask.png", Square(6, 4));
   const Image mask = ReadMask(folder.path() / "mask.png", 6, 4, false);
@@ -30,13 +30,13 @@ TEST(Mask, AnyPixelThatIsNotBlackIsLeft) {
   EXPECT_EQ(std::ranges::count(mask.pixels, 0.0f), 15);
 }
 
-TEST(Mask, OfAReducedPhotographOnlyWholePixelsCount) {
+TEST(Mask, ExcludesPartlyMaskedPixelsOfADownscaledPhotograph) {
   const test::ScratchFolder folder;
   WriteImage(folder.path() / "mask.png", Square(6, 4));
   const Image mask = ReadMask(folder.path() / "mask.png", 6, 4, false);
-  EXPECT_EQ(WholePixels(mask, 1).size(), 9u);
-  // Of the squares of 2 x 2 pixels three are cut by the border of what is left.
-  EXPECT_EQ(WholePixels(mask, 2), std::vector<std::uint32_t>{0});
+  EXPECT_EQ(UnmaskedPixels(mask, 1).size(), 9u);
+  // The border of the mask crosses three of the four blocks of 2 x 2 pixels.
+  EXPECT_EQ(UnmaskedPixels(mask, 2), std::vector<std::uint32_t>{0});
 }
 
 TEST(Mask, MultipliesAlpha) {

@@ -31,13 +31,13 @@ class SeenFromAnArc : public testing::Test {
   }
   static double AngleOf(int camera) { return (camera - 12.5) * 5 * kDegree; }
 
-  //   left_over  of a sighting, from the angle
+  //   residual  of a sighting, from the angle
   template <typename F>
-  std::vector<AngleResiduals> With(F left_over) {
+  std::vector<AngleResiduals> With(F residual) {
     PhotographFit fit;
     for (const Sighting& s : colors_.seen) {
-      fit.left_over.push_back(
-          Eigen::Vector3f::Constant(static_cast<float>(left_over(AngleOf(s.photograph)))));
+      fit.residuals.push_back(
+          Eigen::Vector3f::Constant(static_cast<float>(residual(AngleOf(s.photograph)))));
     }
     return ResidualsByAngle(posed_, colors_, fit);
   }
@@ -46,31 +46,31 @@ class SeenFromAnArc : public testing::Test {
   TrackColors colors_;
 };
 
-TEST_F(SeenFromAnArc, GlossRisesWithTheAngle) {
+TEST_F(SeenFromAnArc, GlossyResidualsGrowWithTheAngle) {
   const auto residuals = With([](double angle) { return -std::fabs(angle); });
   ASSERT_GE(residuals.size(), 12u);
   for (const AngleResiduals& one : residuals) {
-    EXPECT_NEAR(one.quartiles[1] * kFlatChange, one.degrees * kDegree, 1e-3);
+    EXPECT_NEAR(one.quartiles[1] * kTexturelessVariation, one.degrees * kDegree, 1e-3);
     EXPECT_LE(one.quartiles[0], one.quartiles[1]);
     EXPECT_LE(one.quartiles[1], one.quartiles[2]);
   }
 }
 
-TEST_F(SeenFromAnArc, NoiseIsTheSameAtEveryAngle) {
+TEST_F(SeenFromAnArc, NoiseDoesNotDependOnTheAngle) {
   std::mt19937 generator(7);
   std::normal_distribution<double> noise(0, 0.1);
   for (const AngleResiduals& one : With([&](double) { return noise(generator); })) {
-    EXPECT_NEAR(one.quartiles[1] * kFlatChange, 0.067, 0.03) << one.degrees;
+    EXPECT_NEAR(one.quartiles[1] * kTexturelessVariation, 0.067, 0.03) << one.degrees;
   }
 }
 
-TEST_F(SeenFromAnArc, WhatTextureExplainsCountsLess) {
+TEST_F(SeenFromAnArc, ResidualsAreRelativeToTheTexture) {
   const double plain = With([](double) { return 0.1; }).front().quartiles[1];
-  for (Sighting& s : colors_.seen) s.contrast = static_cast<float>(kFlatChange);
+  for (Sighting& s : colors_.seen) s.contrast = static_cast<float>(kTexturelessVariation);
   EXPECT_NEAR(With([](double) { return 0.1; }).front().quartiles[1], plain / 2, 1e-5);
 }
 
-TEST_F(SeenFromAnArc, PointsThatAreRarelySeenSayNothing) {
+TEST_F(SeenFromAnArc, PointsWithFewSightingsAreIgnored) {
   std::erase_if(colors_.seen, [](const Sighting& s) { return s.photograph >= 4; });
   EXPECT_TRUE(With([](double angle) { return angle; }).empty());
 }

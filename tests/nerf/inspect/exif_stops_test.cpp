@@ -50,7 +50,7 @@ class ExifOfACapture : public testing::Test {
   PosedImages posed_;
 };
 
-TEST_F(ExifOfACapture, TellsOfTheExposuresWhereNoPointsDo) {
+TEST_F(ExifOfACapture, GivesTheExposuresWithoutPoints) {
   for (const float time : {0.01f, 0.02f, 0.04f}) Add({{"ExposureTime", time}});
   EXPECT_THAT(ReadExifStops(posed_).stops,
               ElementsAre(DoubleNear(-1, 1e-3), DoubleNear(0, 1e-3), DoubleNear(1, 1e-3)));
@@ -59,13 +59,13 @@ TEST_F(ExifOfACapture, TellsOfTheExposuresWhereNoPointsDo) {
   EXPECT_TRUE(ExposureVerdict().on);
 }
 
-TEST_F(ExifOfACapture, OfACameraThatWasLockedCallsForNothing) {
+TEST_F(ExifOfACapture, OfALockedCameraNeedsNoEffect) {
   for (int i = 0; i < 3; ++i) Add({{"ExposureTime", 0.01f}, {"FNumber", 4.0f}});
   EXPECT_TRUE(ExposureVerdict().decided);
   EXPECT_FALSE(ExposureVerdict().on);
 }
 
-TEST_F(ExifOfACapture, SaysNothingWhereAPhotographHasNone) {
+TEST_F(ExifOfACapture, IsAbsentWhereAPhotographHasNone) {
   Add({{"ExposureTime", 0.01f}});
   Add({});
   EXPECT_TRUE(ReadExifStops(posed_).stops.empty());
@@ -73,7 +73,7 @@ TEST_F(ExifOfACapture, SaysNothingWhereAPhotographHasNone) {
   EXPECT_FALSE(ExposureVerdict().decided);
 }
 
-TEST_F(ExifOfACapture, ThatContradictsItselfIsNamedInOneLineAndNotUsed) {
+TEST_F(ExifOfACapture, ThatContradictsItselfIsReportedAndNotUsed) {
   Add({{"ExposureTime", 0.01f}});
   Add({{"ExposureTime", 0.02f}, {"Exif:ShutterSpeedValue", 2.0f}});
   const ExifStops exif = ReadExifStops(posed_);

@@ -24,17 +24,17 @@ std::vector<Sighting> Sightings(int points, const std::vector<float>& e, double 
   return all;
 }
 
-TEST(PhotographFit, TakesPointsAndPhotographsApart) {
+TEST(PhotographFit, SeparatesPointsAndPhotographs) {
   const std::vector<float> e = {-0.6f, -0.1f, 0.0f, 0.2f, 0.5f};
   const auto sightings = Sightings(200, e, 0);
   const PhotographFit fit = FitPhotographs(sightings, 200, e.size());
   for (std::size_t i = 0; i < e.size(); ++i) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(fit.of_photograph[i][c], e[i], 1e-3);
   }
-  for (const auto& left : fit.left_over) EXPECT_LT(left.norm(), 5e-3);
+  for (const auto& residual : fit.residuals) EXPECT_LT(residual.norm(), 5e-3);
 }
 
-TEST(PhotographFit, IsNotBentByWhatPassesBy) {
+TEST(PhotographFit, IsNotBiasedByPassersBy) {
   const std::vector<float> e = {-0.6f, -0.1f, 0.0f, 0.2f, 0.5f};
   const PhotographFit fit = FitPhotographs(Sightings(400, e, 0.15), 400, e.size());
   for (std::size_t i = 0; i < e.size(); ++i) {

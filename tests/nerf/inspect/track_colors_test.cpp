@@ -13,7 +13,7 @@ namespace nerf {
 namespace {
 
 constexpr double kNearby = 0.6;  // radians
-constexpr int kPhotograph = 5;   // that does not see what it should
+constexpr int kPhotograph = 5;   // in which the point is hidden
 
 std::size_t UnseenBy(const PosedImages& posed, int photograph) {
   const std::vector<Sighting> unseen = ReadTrackColors(posed, kNearby).unseen;
@@ -38,7 +38,7 @@ int NeighbourOf(const PosedImages& posed, int point) {
   return nearest == track.end() ? -1 : nearest->image;
 }
 
-TEST(TrackColors, APointThatTheNeighbourSeesIsMissed) {
+TEST(TrackColors, APointThatTheNeighbourObservesIsUnseen) {
   const test::ScratchFolder folder;
   synthetic::SampleOptions options;
   options.scenario = synthetic::Scenario::kNothing;
@@ -51,7 +51,7 @@ TEST(TrackColors, APointThatTheNeighbourSeesIsMissed) {
       sfm::ReadColmapModel(folder.path() / "truth" / "sparse", folder.path() / "images");
   EXPECT_LT(UnseenBy(posed, kPhotograph), 3u);
 
-  // Somebody stands before this camera alone.
+  // A passer-by in front of this camera only.
   Blind(posed, [](int, int image) { return image == kPhotograph; });
   const std::size_t missed = UnseenBy(posed, kPhotograph);
   EXPECT_GT(missed, 50u);

@@ -44,10 +44,10 @@ struct CutOutBall {
   }
 };
 
-TEST(BallAboutHull, HoldsTheObjectTightly) {
+TEST(BoundingBallOfHull, EnclosesTheObjectTightly) {
   const Vector3d centre(0.3, -0.2, 0.1);
   const CutOutBall object(centre, 0.5);
-  const auto ball = BallAboutHull(object.posed, SceneNormalization());
+  const auto ball = BoundingBallOfHull(object.posed, SceneNormalization());
   ASSERT_TRUE(ball);
   EXPECT_LT((ball->centre - centre).norm(), 0.08);
   EXPECT_GT(ball->radius, 0.5);
@@ -55,17 +55,17 @@ TEST(BallAboutHull, HoldsTheObjectTightly) {
   EXPECT_LT(ball->radius, 0.5 * std::sqrt(3.0) + 0.2);
 }
 
-TEST(BallAboutHull, IsNoneWhereNothingIsTransparent) {
+TEST(BoundingBallOfHull, IsNoneWhereNothingIsTransparent) {
   const CutOutBall object(Vector3d::Zero(), 0.5, false);
-  EXPECT_FALSE(BallAboutHull(object.posed, SceneNormalization()));
+  EXPECT_FALSE(BoundingBallOfHull(object.posed, SceneNormalization()));
 }
 
-TEST(BallAboutHull, BecomesTheUnitBall) {
+TEST(BoundingBallOfHull, BecomesTheUnitBall) {
   SceneNormalization frame;
   frame.scale = 0.7;
   frame.translation = {1, 2, 3};
   const Ball ball = {{0.3, -0.2, 0.1}, 0.6};
-  const SceneNormalization fitted = FittedTo(ball, frame);
+  const SceneNormalization fitted = NormalizedTo(ball, frame);
   const Vector3d centre = frame.WorldFromNormalized(ball.centre);
   const Vector3d surface = frame.WorldFromNormalized(ball.centre + Vector3d(0, 0.6, 0));
   EXPECT_LT(fitted.NormalizedFromWorld(centre).norm(), 1e-12);

@@ -27,7 +27,7 @@ TEST(AdamStep, MatchesThePublishedAlgorithm) {
   }
 }
 
-TEST(AdamStep, AnEntryWithoutGradientStaysWhereItIs) {
+TEST(AdamStep, AnEntryWithoutGradientIsNotChanged) {
   AdamCoefficients adam;
   adam.learning_rate = 0.01f;
   std::vector<float> parameter = {0.5f}, first = {0.0f}, second = {0.0f};
@@ -49,7 +49,7 @@ TEST(AdamStep, BiasCorrectionsEndWhereTheyAreOne) {
   EXPECT_LT(corrections.size(), 3000u);
 }
 
-TEST(AdamStep, TellsWhenAGradientIsNotFinite) {
+TEST(AdamStep, ReportsANonFiniteGradient) {
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
         -std::numeric_limits<float>::infinity()}) {

@@ -73,7 +73,7 @@ TEST_P(Bfloat16, InfinityAndNanStayWhatTheyAre) {
   EXPECT_TRUE(std::isnan(Lower(pairs[2])));
 }
 
-// The bound that a person can count on: two factors, each rounded by at most 2^-9 of its size.
+// The guaranteed bound: two factors, each with a relative error of at most 2^-9.
 TEST_P(Bfloat16, ProductsAreOffByLessThanTheRoundingOfTheirFactors) {
   for (const auto& [rows, inner, columns] :
        {std::array<std::int64_t, 3>{1, 16, 16}, {13, 32, 64}, {37, 64, 80}, {256, 64, 64}}) {

@@ -39,7 +39,7 @@ std::vector<double> Encode(const HashGridLayout& layout, const std::vector<doubl
   return encoded;
 }
 
-TEST(HashGridLayout, LevelsGrowGeometricallyAndTurnFromDenseToHashed) {
+TEST(HashGridLayout, LevelsGrowGeometricallyFromDenseToHashed) {
   const HashGridLayout layout = MakeHashGridLayout(SmallGrid());
   ASSERT_EQ(layout.levels.size(), 6u);
   EXPECT_EQ(layout.levels.front().resolution, 4u);
@@ -81,7 +81,7 @@ TEST(HashEncoding, WeightsSumToOneEverywhere) {
   }
 }
 
-TEST(HashEncoding, AtAVertexOnlyItsEntryCounts) {
+TEST(HashEncoding, AtAVertexReturnsItsEntry) {
   HashGridOptions options = SmallGrid();
   options.levels = 1;
   const HashGridLayout layout = MakeHashGridLayout(options);

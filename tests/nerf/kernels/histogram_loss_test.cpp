@@ -27,7 +27,7 @@ std::vector<float> Weights(int count, std::uint32_t seed) {
   return weights;
 }
 
-// dL/dw by central differences against what `gradient` says.
+// Compares dL/dw by central differences with `gradient`.
 void ExpectGradient(std::vector<float> w, const std::vector<float>& gradient,
                     const std::function<double(const std::vector<float>&)>& loss) {
   for (std::size_t i = 0; i < w.size(); ++i) {
@@ -42,7 +42,7 @@ void ExpectGradient(std::vector<float> w, const std::vector<float>& gradient,
   }
 }
 
-TEST(HistogramBoundLoss, IsTheSumOverPairsThatOverlapAndItsGradientIsRight) {
+TEST(HistogramBoundLoss, MatchesTheSumOverOverlappingPairsInValueAndGradient) {
   for (std::uint32_t seed = 1; seed < 6; ++seed) {
     const auto edges = Rising(17, seed), coarse_edges = Rising(9, seed + 10);
     const auto weights = Weights(17, seed + 20);
@@ -78,14 +78,14 @@ TEST(HistogramBoundLoss, IsZeroUnderAnEnvelope) {
   EXPECT_EQ(gradient, std::vector<float>(5, 0.0f));
 }
 
-TEST(HistogramBoundLoss, RaysWithoutWeightCostNothing) {
+TEST(HistogramBoundLoss, IsZeroForRaysWithoutWeight) {
   const auto edges = Rising(6, 1);
   const std::vector<float> none(6, 0.0f);
   std::vector<float> gradient(6);
   EXPECT_EQ(HistogramBoundLoss<float>(edges, none, edges, none, gradient), 0.0);
 }
 
-TEST(DistortionLoss, IsTheDoubleSumAndItsGradientIsRight) {
+TEST(DistortionLoss, MatchesTheDoubleSumInValueAndGradient) {
   for (std::uint32_t seed = 1; seed < 6; ++seed) {
     const auto edges = Rising(13, seed);
     const auto weights = Weights(13, seed + 20);
@@ -106,7 +106,7 @@ TEST(DistortionLoss, IsTheDoubleSumAndItsGradientIsRight) {
   }
 }
 
-TEST(DistortionLoss, OnePlaceIsBetterThanTwo) {
+TEST(DistortionLoss, PrefersOnePlaceToTwo) {
   const std::vector<float> edges = {0.0f, 0.1f, 0.2f, 0.9f, 1.0f};
   std::vector<float> gradient(4);
   const double one = DistortionLoss<float>(edges, std::vector<float>{1, 0, 0, 0}, gradient);

@@ -78,7 +78,7 @@ TEST_P(MatrixProducts, AgreeWithPlainLoops) {
   }
 }
 
-TEST_P(MatrixProducts, NaNIsNotHiddenByTheReLU) {
+TEST_P(MatrixProducts, PropagateNaNThroughTheReLU) {
   std::vector<float> a = {NAN}, b(16, 1.0f), c(16, 0.0f);
   MatrixProduct product{a.data(), 1, 1, b.data(), 16, c.data(), 16, 1, 1, 16};
   Multiply(product, Epilogue::kStoreRelu);

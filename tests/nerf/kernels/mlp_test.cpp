@@ -13,7 +13,7 @@
 namespace nerf::kernels {
 namespace {
 
-using LayerWeights = std::vector<std::vector<double>>;  // a layer: [outputs, inputs]
+using LayerWeights = std::vector<std::vector<double>>;  // per layer: [outputs, inputs]
 
 // The network in plain double loops.
 std::vector<double> Reference(const std::vector<int>& widths, const LayerWeights& weights,
@@ -62,7 +62,7 @@ class TileMlps : public test::EverySimdLevel {
     return loss;
   }
 
-  // Central differences are exact but where a ReLU's kink lies between the two points.
+  // Central differences are exact except where a ReLU changes its sign between the two points.
   double Numeric(double& at) const {
     const double old = at, h = 1e-6;
     at = old + h;
@@ -135,8 +135,8 @@ TEST_P(TileMlps, ForwardAndBackwardMatchPlainLoopsAndCentralDifferences) {
   }
 }
 
-// Three layers of rounding, and on the way back also the neurons whose sign it turned: what a
-// training with bfloat16 must bear.
+// The error of training in bfloat16: three layers of rounding, and in the backward pass also ReLUs
+// whose sign the rounding changed.
 TEST_P(TileMlps, Bfloat16StaysCloseToFloat) {
   const std::vector<int> widths = {31, 64, 64, 3};
   constexpr std::int64_t kSamples = 37;

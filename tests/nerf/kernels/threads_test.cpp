@@ -39,7 +39,7 @@ class KernelsOnThreads : public testing::Test {
 
 constexpr std::int64_t kRays = 256, kSamples = 16 * kRays;
 
-TEST_F(KernelsOnThreads, CompositeEachRayByItself) {
+TEST_F(KernelsOnThreads, CompositeEachRayIndependently) {
   std::vector<std::int64_t> begin(kRays + 1);
   for (std::int64_t r = 0; r <= kRays; ++r) begin[r] = 16 * r;
   const auto sigma = Waves(kSamples, 0, 5), dt = Waves(kSamples, 0, 0.2f),
@@ -59,7 +59,7 @@ TEST_F(KernelsOnThreads, CompositeEachRayByItself) {
   });
 }
 
-TEST_F(KernelsOnThreads, ScatterEachLevelByItself) {
+TEST_F(KernelsOnThreads, ScatterEachLevelIndependently) {
   const HashGridLayout layout = MakeHashGridLayout({6, 4, 10, 4, 128});
   const auto positions = Waves(3 * kSamples, 0, 1);
   const auto table = Waves(layout.entries * 4, -1, 1);
@@ -79,7 +79,7 @@ TEST_F(KernelsOnThreads, ScatterEachLevelByItself) {
   });
 }
 
-TEST_F(KernelsOnThreads, NetworksShareTheirWeightsAndNothingElse) {
+TEST_F(KernelsOnThreads, NetworksShareOnlyTheirWeights) {
   const std::vector<int> widths = {32, 64, 16};
   const auto first_layer = Waves(32 * 64, -0.3f, 0.3f), second_layer = Waves(64 * 16, -0.3f, 0.3f);
   const std::vector<const float*> weights = {first_layer.data(), second_layer.data()};
@@ -102,7 +102,7 @@ TEST_F(KernelsOnThreads, NetworksShareTheirWeightsAndNothingElse) {
   }
 }
 
-TEST_F(KernelsOnThreads, AdamMovesEachParameterByItself) {
+TEST_F(KernelsOnThreads, AdamUpdatesEachParameterIndependently) {
   AdamCoefficients adam;
   adam.learning_rate = 0.01f;
   const auto corrections = BiasCorrections(adam);

@@ -114,7 +114,7 @@ TEST(VolumeRendering, GradientsMatchTheOracleOnRandomRays) {
   }
 }
 
-TEST(VolumeRendering, EmptySpaceShowsTheBackgroundAndCanStillLearn) {
+TEST(VolumeRendering, EmptySpaceShowsTheBackgroundAndHasAGradient) {
   RayCase ray;
   for (int i = 0; i < 8; ++i) ray.Add(0.0f, 0.1f);
   const Result result = Forward(ray);
@@ -126,7 +126,7 @@ TEST(VolumeRendering, EmptySpaceShowsTheBackgroundAndCanStillLearn) {
   }
 }
 
-TEST(VolumeRendering, ARayWithoutSamplesIsItsBackground) {
+TEST(VolumeRendering, ARayWithoutSamplesShowsItsBackground) {
   const Result result = Forward(RayCase{});
   for (int c = 0; c < 3; ++c) EXPECT_EQ(result.rgb[c], RayCase{}.background[c]);
   EXPECT_EQ(result.opacity, 0.0f);
@@ -146,7 +146,7 @@ TEST(VolumeRendering, ThinFogKeepsItsOpacity) {
   }
 }
 
-TEST(VolumeRendering, AnOpaqueSampleHidesWhatIsBehindWithFiniteGradients) {
+TEST(VolumeRendering, AnOpaqueSampleHidesWhatIsBehindItWithFiniteGradients) {
   RayCase ray;
   ray.Add(0.5f, 0.1f);
   ray.Add(1e10f, 1.0f, 1.0f, 0.0f, 0.0f);
@@ -220,7 +220,7 @@ TEST(VolumeRendering, GradientsDeepInTheRayKeepTheirSign) {
 }
 
 // With a radiance of (g, 0, 0) and no background the red of the pixel is the sum of w_i g_i.
-TEST(Weights, AreThoseOfTheRenderingIntegralAndSoAreTheirGradients) {
+TEST(Weights, MatchTheRenderingIntegralInValueAndGradient) {
   std::mt19937 generator(3);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   const std::vector<std::int64_t> begin = {0, 7, 7, 30};
@@ -251,7 +251,7 @@ TEST(Weights, AreThoseOfTheRenderingIntegralAndSoAreTheirGradients) {
   for (int i = 0; i < 30; ++i) EXPECT_NEAR(dL_dsigma[i], expected[i], 1e-6) << i;
 }
 
-TEST(CountVisible, StopsWhereTooLittleLightGetsThrough) {
+TEST(CountVisible, StopsAtLowTransmittance) {
   const std::vector<std::int64_t> begin = {0, 10, 10, 13};
   const std::vector<float> sigma(13, 2.0f), dt(13, 1.0f);
   std::vector<std::int64_t> kept(3);

@@ -106,7 +106,7 @@ TEST_F(CheckpointFile, AHeaderThatDoesNotFitItsDataIsRefused) {
     std::string changed(reinterpret_cast<const char*>(&size), sizeof size);
     changed += header + data;
     WriteWithRightSum(changed);
-    EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("cannot be understood")) << from << " " << to;
+    EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("invalid header")) << from << " " << to;
   }
 }
 

@@ -30,12 +30,12 @@ View Photograph(const std::string& name) {
   view.normalized_from_camera = Eigen::Isometry3d::Identity();
   for (int pixel = 0; pixel < 48; ++pixel) {
     if (pixel % 3 == 0) continue;
-    view.whole.push_back(pixel);
+    view.valid_pixels.push_back(pixel);
     for (const int channel : {pixel % 8, pixel / 8, 0, 1}) {
       view.rgba.emplace_back(static_cast<float>(channel));
     }
   }
-  view.points = {{3, 1.5f}, {4, 2.5f}};
+  view.depth_observations = {{3, 1.5f}, {4, 2.5f}};
   return view;
 }
 
@@ -56,16 +56,16 @@ std::vector<std::string> NamesOf(const std::vector<View>& views) {
 TEST(ColumnsOf, AViewHoldsItsPixelsAndPointsThere) {
   const View whole = Photograph("a");
   const View right = ColumnsOf(whole, 4, 8);
-  EXPECT_EQ(right.Held() + ColumnsOf(whole, 0, 4).Held(), whole.Held());
-  for (std::int64_t k = 0; k < right.Held(); ++k) {
-    const std::int64_t pixel = right.PixelOf(k);
+  EXPECT_EQ(right.StoredCount() + ColumnsOf(whole, 0, 4).StoredCount(), whole.StoredCount());
+  for (std::int64_t k = 0; k < right.StoredCount(); ++k) {
+    const std::int64_t pixel = right.PixelIndex(k);
     EXPECT_EQ(static_cast<float>(right.rgba[4 * k]), static_cast<float>(4 + pixel % 4));
     EXPECT_EQ(static_cast<float>(right.rgba[4 * k + 1]), static_cast<float>(pixel / 4));
-    EXPECT_EQ(right.HeldNear(pixel), k);
+    EXPECT_EQ(right.StoredNear(pixel), k);
   }
-  ASSERT_EQ(right.points.size(), 1u);
-  EXPECT_EQ(right.points[0].pixel, 0);
-  EXPECT_EQ(right.points[0].distance, 2.5f);
+  ASSERT_EQ(right.depth_observations.size(), 1u);
+  EXPECT_EQ(right.depth_observations[0].pixel, 0);
+  EXPECT_EQ(right.depth_observations[0].distance, 2.5f);
 }
 
 TEST(HeldOutHalves, AreForValidationMeanwhileAndInTheirPlacesAgainAfterwards) {
@@ -82,12 +82,12 @@ TEST(HeldOutHalves, AreForValidationMeanwhileAndInTheirPlacesAgainAfterwards) {
     for (const View& right : data.validation) {
       const View& left = data.train[std::stoul(right.name)];
       EXPECT_EQ(left.camera.width, 4) << right.name;
-      EXPECT_EQ(left.Held() + right.Held(), Photograph("").Held());
+      EXPECT_EQ(left.StoredCount() + right.StoredCount(), Photograph("").StoredCount());
     }
   }
   EXPECT_EQ(NamesOf(data.train), before);
   EXPECT_EQ(NamesOf(data.validation), std::vector<std::string>{"40"});
-  for (const View& view : data.train) EXPECT_EQ(view.Held(), Photograph("").Held());
+  for (const View& view : data.train) EXPECT_EQ(view.StoredCount(), Photograph("").StoredCount());
 }
 
 TEST(HeldOutHalves, AreOfAQuarterOfThePhotographsAtMost) {
@@ -101,7 +101,7 @@ TEST(HeldOutHalves, AreNotOfPhotographsOfWhichOneHalfIsMaskedOut) {
   Dataset data = Photographs(8, 0);
   data.train[2] = ColumnsOf(data.train[2], 0, 4);
   data.train[2].camera = Photograph("").camera;
-  for (std::uint32_t& pixel : data.train[2].whole) pixel = pixel / 4 * 8 + pixel % 4;
+  for (std::uint32_t& pixel : data.train[2].valid_pixels) pixel = pixel / 4 * 8 + pixel % 4;
   const HeldOutHalves held_out(data);
   EXPECT_THAT(NamesOf(data.validation), ElementsAre("6"));
 }

@@ -102,7 +102,7 @@ TEST(SeenPoints, StandAsFarAwayAsWhatTheirPixelsShow) {
   std::size_t points = 0, far_off = 0;
   for (const View& view : few.data.train) {
     const std::vector<double> truth = TrueDistances(few, view);
-    for (const SeenPoint& point : view.points) {
+    for (const DepthObservation& point : view.depth_observations) {
       const double expected = truth[point.pixel];
       ++points;
       // A pixel is large here: at an edge its middle shows something else.
@@ -111,7 +111,7 @@ TEST(SeenPoints, StandAsFarAwayAsWhatTheirPixelsShow) {
   }
   EXPECT_GT(points, 1000u);
   EXPECT_LT(far_off, points / 10);
-  for (const View& view : few.data.validation) EXPECT_TRUE(view.points.empty());
+  for (const View& view : few.data.validation) EXPECT_TRUE(view.depth_observations.empty());
 }
 
 TEST(SeenPoints, AreDrawnAsOftenAsAskedFor) {
@@ -122,7 +122,7 @@ TEST(SeenPoints, AreDrawnAsOftenAsAskedFor) {
   EXPECT_NEAR(static_cast<double>(known), 1000, 140);  // five standard deviations
   // Without a share of theirs, what is drawn is the same to the bit.
   Dataset plain = few.data;
-  for (View& view : plain.train) view.points.clear();
+  for (View& view : plain.train) view.depth_observations.clear();
   const TargetBatch with = PixelSampler(few.data.train).Sample(500, 3, 7),
                     without = PixelSampler(plain.train).Sample(500, 3, 7);
   EXPECT_EQ(with.rays.direction, without.rays.direction);
@@ -135,7 +135,7 @@ double DistanceError(const Model& model, const FewPhotographs& few) {
   for (const View& view : few.data.validation) {
     const std::vector<double> truth = TrueDistances(few, view);
     std::vector<std::int64_t> pixels;
-    for (std::int64_t k = 0; k < view.Held(); k += 3) pixels.push_back(k);
+    for (std::int64_t k = 0; k < view.StoredCount(); k += 3) pixels.push_back(k);
     const RayBatch rays =
         RaysOfPixels(view.camera, view.normalized_from_camera, pixels, Eigen::Vector3f::Zero())
             .rays;

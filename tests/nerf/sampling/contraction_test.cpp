@@ -12,7 +12,7 @@ TEST(Contraction, IsTheIdentityInsideTheUnitBall) {
   }
 }
 
-TEST(Contraction, IsBoundedByTwoHoweverFarThePoint) {
+TEST(Contraction, IsBoundedByTwoAtAnyDistance) {
   for (const float r : {1.5f, 10.0f, 1e6f, 1e19f, 1e30f}) {
     const float norm = Contract(Eigen::Vector3f(0.6f, 0.8f, 0.0f) * r).norm();
     EXPECT_LE(norm, 2.0f + 1e-6f);
@@ -20,7 +20,7 @@ TEST(Contraction, IsBoundedByTwoHoweverFarThePoint) {
   }
 }
 
-TEST(Contraction, UncontractComesBack) {
+TEST(Contraction, UncontractInvertsContract) {
   for (const float r : {0.1f, 0.99f, 1.0f, 1.01f, 3.0f, 50.0f}) {
     const Eigen::Vector3f x = Eigen::Vector3f(2, -1, 0.5f).normalized() * r;
     EXPECT_LT((Uncontract(Contract(x)) - x).norm(), 1e-3f * r);
@@ -40,7 +40,7 @@ TEST(Contraction, SpeedIsTheDerivativeAlongTheDirection) {
   }
 }
 
-TEST(Contraction, TheUnitCubeHoldsAllOfContractedSpace) {
+TEST(Contraction, TheUnitCubeContainsAllOfContractedSpace) {
   EXPECT_EQ(UnitCubeFromContracted({-2, 0, 2}), Eigen::Vector3f(0, 0.5f, 1));
   EXPECT_EQ(ContractedFromUnitCube({0, 0.5f, 1}), Eigen::Vector3f(-2, 0, 2));
 }

@@ -28,7 +28,7 @@ TEST(OccupancyGrid, StartsFull) {
   EXPECT_EQ(OccupancyGrid(Options(), 0.01f).OccupiedFraction(), 1.0);
 }
 
-TEST(OccupancyGrid, FindsMatterAndForgetsTheRest) {
+TEST(OccupancyGrid, MarksMatterAndClearsTheRest) {
   OccupancyGrid grid(Options(), 0.01f);
   for (int step = 0; step < 60; ++step) grid.Update(step, 7, DensityOfABall);
   EXPECT_TRUE(grid.Occupied({0.5f, 0.5f, 0.5f}));
@@ -38,7 +38,7 @@ TEST(OccupancyGrid, FindsMatterAndForgetsTheRest) {
   EXPECT_LT(grid.OccupiedFraction(), 0.09);
 }
 
-TEST(OccupancyGrid, FindsMatterThatAppearsLater) {
+TEST(OccupancyGrid, MarksMatterThatAppearsLater) {
   OccupancyGrid grid(Options(), 0.01f);
   const auto nothing = [](std::span<const float> p) {
     return std::vector<float>(p.size() / 3, 0.0f);
@@ -48,7 +48,7 @@ TEST(OccupancyGrid, FindsMatterThatAppearsLater) {
   EXPECT_TRUE(grid.Occupied({0.5f, 0.5f, 0.5f}));
 }
 
-TEST(OccupancyGrid, WhatNoCameraSeesStaysEmpty) {
+TEST(OccupancyGrid, CellsThatNoCameraSeesStayEmpty) {
   OccupancyGrid grid(Options(), 0.01f);
   grid.KeepVisible([](const Eigen::Vector3f& centre, float) { return centre[0] < 0.5f; });
   for (int step = 0; step < 40; ++step) {
@@ -59,7 +59,7 @@ TEST(OccupancyGrid, WhatNoCameraSeesStaysEmpty) {
   EXPECT_FALSE(grid.Occupied({0.6f, 0.5f, 0.5f}));
 }
 
-TEST(OccupancyGrid, OutsideTheCubeThereIsNothing) {
+TEST(OccupancyGrid, IsEmptyOutsideTheCube) {
   const OccupancyGrid grid(Options(), 0.01f);
   EXPECT_FALSE(grid.Occupied({-0.01f, 0.5f, 0.5f}));
   EXPECT_FALSE(grid.Occupied({0.5f, 1.01f, 0.5f}));
@@ -67,7 +67,7 @@ TEST(OccupancyGrid, OutsideTheCubeThereIsNothing) {
   EXPECT_TRUE(grid.Occupied({1.0f, 1.0f, 1.0f}));  // the far corner belongs to the last cell
 }
 
-TEST(OccupancyGrid, ComesBackFromItsDensities) {
+TEST(OccupancyGrid, IsRestoredFromItsDensities) {
   OccupancyGrid grid(Options(), 0.01f), copy(Options(), 0.01f);
   for (int step = 0; step < 30; ++step) grid.Update(step, 7, DensityOfABall);
   copy.Density() = grid.Density();

@@ -55,7 +55,7 @@ TEST(EqualIntervals, AreOfEqualLengthInContractedSpace) {
   }
 }
 
-TEST(EqualIntervals, JitterMovesTheInnerEdgesByUpToHalfAnInterval) {
+TEST(EqualIntervals, JitterShiftsTheInnerEdgesByUpToHalfAnInterval) {
   const Eigen::Vector3f origin(0, 0, 0), direction(1, 0, 0);
   MarchOptions options;
   options.far_distance = 0.9;  // inside the unit ball lengths are lengths
@@ -68,7 +68,7 @@ TEST(EqualIntervals, JitterMovesTheInnerEdgesByUpToHalfAnInterval) {
   }
 }
 
-TEST(ResampleIntervals, GivesEqualSharesOfTheWeight) {
+TEST(ResampleIntervals, GivesIntervalsOfEqualWeight) {
   const std::vector<float> edges = {0, 1, 2, 4}, weights = {1, 0, 3};
   std::vector<float> out(400);
   ResampleIntervals(edges, weights, 0.0f, 0.5f, out);
@@ -82,7 +82,7 @@ TEST(ResampleIntervals, GivesEqualSharesOfTheWeight) {
   EXPECT_LE(out.back(), 4.0f);
 }
 
-TEST(ResampleIntervals, PaddingReachesEveryPlace) {
+TEST(ResampleIntervals, PaddingSamplesEveryInterval) {
   const std::vector<float> edges = {0, 1, 2, 3}, weights = {0, 1, 0};
   std::vector<float> out(600);
   ResampleIntervals(edges, weights, 1.0f, 0.5f, out);

@@ -51,7 +51,7 @@ TEST(MarchRays, IntervalsOfAFullGridTileTheRayFromNearToFar) {
   }
 }
 
-TEST(MarchRays, SamplesLieOnTheirRayInContractedSpace) {
+TEST(MarchRays, SamplesAreOnTheirRayInContractedSpace) {
   const MarchOptions options;
   const OccupancyGrid grid(CoarseGrid(), options.StepLength());
   const RayBatch rays = RandomRays(5);
@@ -67,7 +67,7 @@ TEST(MarchRays, SamplesLieOnTheirRayInContractedSpace) {
   }
 }
 
-TEST(MarchRays, EmptyCellsAreSteppedOver) {
+TEST(MarchRays, EmptyCellsAreSkipped) {
   const MarchOptions options;
   OccupancyGrid grid(CoarseGrid(), options.StepLength());
   const auto inside = [](const Eigen::Vector3f& x) { return (x.array() > 0.5f).all(); };
@@ -79,8 +79,8 @@ TEST(MarchRays, EmptyCellsAreSteppedOver) {
   }
 }
 
-// Whatever is occupied for more than a step on both sides of a point holds the middle of a step.
-TEST(MarchRays, NothingIsSteppedOverThatIsNotEmpty) {
+// Space occupied for more than a step on both sides of a point contains the centre of a step.
+TEST(MarchRays, OccupiedCellsAreNeverSkipped) {
   MarchOptions options;
   OccupancyGrid grid({.resolution = 64}, options.StepLength());
   grid.KeepVisible([](const Eigen::Vector3f& centre, float) {

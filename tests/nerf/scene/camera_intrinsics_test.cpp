@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 const Camera kPortrait = {CameraModel::kPinhole, 30, 40, {50, 60, 14, 21}};
 
-TEST(CameraIntrinsics, FocalLengthAndPrincipalPointAreWhereTheModelPutsThem) {
+TEST(CameraIntrinsics, FocalLengthAndPrincipalPointAreTakenByModel) {
   const Camera radial = {CameraModel::kRadial, 30, 40, {50, 14, 21, 0.1, 0.2}};
   EXPECT_EQ(FocalLengths(radial), Eigen::Vector2d(50, 50));
   EXPECT_EQ(PrincipalPoint(radial), Eigen::Vector2d(14, 21));
@@ -41,7 +41,7 @@ TEST(CameraIntrinsics, LensIsScaledToACopyOfTheImage) {
   EXPECT_EQ(turned->camera.params, (std::vector<double>{100, 120, 28, 42}));
 }
 
-TEST(CameraIntrinsics, RemainderOfAWholeReductionMayBeCutOrRounded) {
+TEST(CameraIntrinsics, SizesReducedByAnIntegerFactorMayBeTruncatedOrRounded) {
   const Camera odd = {CameraModel::kSimplePinhole, 1079, 719, {1000, 540, 360}};
   EXPECT_TRUE(FitToImage(odd, {539, 359, 1}));
   EXPECT_TRUE(FitToImage(odd, {540, 360, 1}));
@@ -49,7 +49,7 @@ TEST(CameraIntrinsics, RemainderOfAWholeReductionMayBeCutOrRounded) {
   EXPECT_FALSE(FitToImage(odd, {1078, 719, 1}));
 }
 
-TEST(CameraIntrinsics, BrokenCamerasAreRefusedByName) {
+TEST(CameraIntrinsics, InvalidCamerasAreRefusedByName) {
   const auto error_of = [](Camera camera) {
     return InputErrorOf([&] { CheckCamera(camera, "cameras.txt: camera 7"); });
   };

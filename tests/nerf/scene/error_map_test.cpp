@@ -24,7 +24,7 @@ std::vector<int> Draws(const ErrorMap& map, int count) {
   return drawn;
 }
 
-TEST(ErrorMap, DrawsEveryPixelAlikeWhileNothingIsKnown) {
+TEST(ErrorMap, DrawsPixelsUniformlyWithoutEstimates) {
   const std::vector<View> views = {ViewOf(20, 17), ViewOf(5, 3)};  // cells of several sizes
   const ErrorMap map(views);
   ASSERT_EQ(map.Errors().size(), 5u);
@@ -37,7 +37,7 @@ TEST(ErrorMap, DrawsEveryPixelAlikeWhileNothingIsKnown) {
   for (const int n : drawn) EXPECT_NEAR(n, kEach, 6 * std::sqrt(kEach));
 }
 
-TEST(ErrorMap, DrawsACellAsOftenAsItIsWrong) {
+TEST(ErrorMap, DrawsACellInProportionToItsErrorAndSize) {
   const std::vector<View> views = {ViewOf(32, 16), ViewOf(16, 8)};
   ErrorMap map(views);
   map.SetErrors(std::vector<float>{0.03f, 0.01f, 0.12f});  // the last has half as many pixels
@@ -47,34 +47,35 @@ TEST(ErrorMap, DrawsACellAsOftenAsItIsWrong) {
   EXPECT_NEAR(drawn[2], 6000, 250);
 }
 
-TEST(ErrorMap, LearnsTheMeanErrorOfACellAndForgetsTheOldOne) {
+TEST(ErrorMap, UpdatesTheRunningMeanOfACell) {
   const std::vector<View> views = {ViewOf(32, 16)};
   ErrorMap map(views);
   const std::vector<std::int64_t> cells(100, 1);
   std::vector<float> errors(100);
   for (int i = 0; i < 100; ++i) errors[i] = i % 2 == 0 ? 0.3f : 0.5f;
-  map.Learn(cells, errors);
+  map.Update(cells, errors);
   EXPECT_NEAR(map.Errors()[1], 0.4f, 0.02f);
-  EXPECT_EQ(map.Errors()[0], -1.0f) << "nothing is known of it";
+  EXPECT_EQ(map.Errors()[0], -1.0f) << "no estimate";
 }
 
-// Corners that no lens reaches are never learned: they must not draw rays for good.
-TEST(ErrorMap, WhatIsNeverSeenCountsAsWrongAsTheOthers) {
+// Corners outside the valid range of the lens never get an estimate; they must not attract rays
+// forever.
+TEST(ErrorMap, CellsWithoutAnEstimateCountWithTheMeanOfTheOthers) {
   const std::vector<View> views = {ViewOf(64, 16)};  // four cells
   ErrorMap map(views);
   const std::vector<std::int64_t> cells = {1, 2, 3};
-  map.Learn(cells, std::vector<float>{1e-5f, 2e-5f, 3e-5f});
+  map.Update(cells, std::vector<float>{1e-5f, 2e-5f, 3e-5f});
   EXPECT_NEAR(Draws(map, 8000)[0], 2000, 250);
 }
 
 TEST(ErrorMap, OneBrightCellDoesNotTakeAllTheRays) {
   const std::vector<View> views = {ViewOf(32, 16)};
   ErrorMap map(views);
-  map.Learn(std::vector<std::int64_t>{0, 1}, std::vector<float>{1e9f, 0.25f});
+  map.Update(std::vector<std::int64_t>{0, 1}, std::vector<float>{1e9f, 0.25f});
   EXPECT_NEAR(Draws(map, 5000)[1], 1000, 150);
 }
 
-TEST(ErrorMap, NoCellIsGivenUp) {
+TEST(ErrorMap, ConvergedCellsAreStillDrawn) {
   const std::vector<View> views = {ViewOf(32, 16)};
   ErrorMap map(views);
   map.SetErrors(std::vector<float>{0.0f, 0.0f});
@@ -95,7 +96,7 @@ TEST(ErrorMap, RefusesTheStateOfOtherPhotographs) {
   for (const std::vector<float>& errors :
        {std::vector<float>(3), {0.1f, NAN}, {0.1f, -0.5f}, {INFINITY, 0.1f}}) {
     EXPECT_THAT(test::InputErrorOf([&] { map.SetErrors(errors); }),
-                testing::HasSubstr("train anew"));
+                testing::HasSubstr("train again"));
   }
 }
 

@@ -12,7 +12,8 @@
 namespace nerf {
 namespace {
 
-// Two views of different size; a pixel's red says which view it is of, green and blue where.
+// Two views of different size. The red of a pixel is the index of its view; green and blue are its
+// position.
 std::vector<View> Views() {
   std::vector<View> views(2);
   for (int v = 0; v < 2; ++v) {
@@ -30,7 +31,7 @@ std::vector<View> Views() {
   return views;
 }
 
-TEST(PixelSampler, EachPixelIsEquallyLikelyAndGoesThroughItsCentre) {
+TEST(PixelSampler, DrawsPixelsUniformlyAndRaysThroughTheirCentres) {
   const std::vector<View> views = Views();
   const TargetBatch batch = PixelSampler(views).Sample(48000, 1, 0);
   std::map<std::array<int, 3>, int> count;
@@ -49,7 +50,7 @@ TEST(PixelSampler, EachPixelIsEquallyLikelyAndGoesThroughItsCentre) {
   for (const auto& [pixel, n] : count) EXPECT_NEAR(n, 1000, 160);  // five standard deviations
 }
 
-TEST(PixelSampler, DrawsDependOnSeedAndStepAlone) {
+TEST(PixelSampler, DrawsDependOnlyOnSeedAndStep) {
   const std::vector<View> views = Views();
   const PixelSampler sampler(views);
   SetNumThreads(1);
@@ -63,7 +64,7 @@ TEST(PixelSampler, DrawsDependOnSeedAndStepAlone) {
   EXPECT_NE(one.rgb, sampler.Sample(500, 8, 3).rgb);
 }
 
-TEST(PixelSampler, AShareOfTheRaysGoesWhereTheFieldIsWrong) {
+TEST(PixelSampler, AShareOfTheRaysIsDrawnByTheErrorMap) {
   const std::vector<View> views = Views();
   PixelSampler sampler(views, 0.5);
   ASSERT_NE(sampler.Errors(), nullptr);
@@ -78,14 +79,14 @@ TEST(PixelSampler, AShareOfTheRaysGoesWhereTheFieldIsWrong) {
   EXPECT_TRUE(PixelSampler(views).Sample(10, 1, 0).cell.empty());
 }
 
-TEST(PixelSampler, WhereAShareOfThePixelsIsHeldTheNearestIsTaken) {
+TEST(PixelSampler, WhereASubsetOfThePixelsIsStoredOneNearbyIsDrawn) {
   std::vector<View> views = Views();
   for (View& view : views) {
-    const auto held = static_cast<std::int64_t>(view.rgba.size() / 12);  // a third of them
+    const auto stored = static_cast<std::int64_t>(view.rgba.size() / 12);  // a third of them
     std::vector<Eigen::half> all = view.rgba;
-    view.rgba.resize(4 * held);
-    for (std::int64_t k = 0; k < held; ++k) {
-      std::copy_n(&all[4 * view.PixelOf(k)], 4, &view.rgba[4 * k]);
+    view.rgba.resize(4 * stored);
+    for (std::int64_t k = 0; k < stored; ++k) {
+      std::copy_n(&all[4 * view.PixelIndex(k)], 4, &view.rgba[4 * k]);
     }
   }
   const TargetBatch batch = PixelSampler(views, 1.0).Sample(3000, 1, 0);
@@ -98,7 +99,7 @@ TEST(PixelSampler, WhereAShareOfThePixelsIsHeldTheNearestIsTaken) {
     const auto d = DirectionFromPixel(views[v].camera, {x + 0.5, y + 0.5});
     for (int c = 0; c < 3; ++c) ASSERT_NEAR(batch.rays.direction[3 * r + c], (*d)[c], 1e-6);
   }
-  EXPECT_EQ(seen.size(), 15u);  // all that are held: 16 / 3 and 32 / 3
+  EXPECT_EQ(seen.size(), 15u);  // all that are stored: 16 / 3 and 32 / 3
 }
 
 TEST(PixelSampler, TransparentPixelsShowTheRaysBackground) {
@@ -110,15 +111,21 @@ TEST(PixelSampler, TransparentPixelsShowTheRaysBackground) {
   EXPECT_EQ(batch.rgb, batch.rays.background);
 }
 
-TEST(RaysOfPixels, LookThroughPixelCentresInRowOrder) {
-  const View view = Views()[0];
-  const std::vector<std::int64_t> pixels = {5, 6};
-  const ViewRays rays =
-      RaysOfPixels(view.camera, view.normalized_from_camera, pixels, Eigen::Vector3f::Ones());
-  const auto d = DirectionFromPixel(view.camera, {1.5, 1.5});
-  ASSERT_EQ(rays.rays.Size(), 2);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(rays.rays.direction[c], (*d)[c], 1e-6);
-  EXPECT_EQ(rays.valid, (std::vector<std::uint8_t>{1, 1}));
+TEST(PixelSampler, AShareOfTheRaysIsDrawnAtDepthObservations) {
+  std::vector<View> views = Views();
+  views[1].depth_observations = {{9, 2.5f}};  // x = 1, y = 1
+  const TargetBatch batch = PixelSampler(views, 0, 0.5).Sample(4000, 1, 0);
+  std::int64_t at_observation = 0;
+  for (std::int64_t r = 0; r < batch.rays.Size(); ++r) {
+    if (batch.distance[r] == 0) continue;
+    ++at_observation;
+    EXPECT_EQ(batch.distance[r], 2.5f);
+    EXPECT_EQ(batch.photograph[r], 1);
+    EXPECT_EQ(batch.rgb[3 * r + 1], 1 / 16.0f);
+    EXPECT_EQ(batch.rgb[3 * r + 2], 1 / 16.0f);
+  }
+  EXPECT_NEAR(at_observation, 2000, 160);  // five standard deviations
+  EXPECT_TRUE(PixelSampler(Views(), 0, 0.5).Sample(10, 1, 0).distance.empty());  // none to draw
 }
 
 }  // namespace

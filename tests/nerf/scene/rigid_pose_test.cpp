@@ -28,7 +28,7 @@ TEST(RigidPose, RigidMatrixIsKept) {
   EXPECT_TRUE(RigidFromMatrix(SomePose(), "").matrix().isApprox(SomePose(), 1e-15));
 }
 
-TEST(RigidPose, SlightlyBentAxesBecomeTheNearestRotation) {
+TEST(RigidPose, SlightlyInexactAxesBecomeTheNearestRotation) {
   Eigen::Matrix4d bent = SomePose();
   bent.topLeftCorner<3, 3>() *= 1.0003;
   bent(0, 1) += 1e-4;
@@ -38,7 +38,7 @@ TEST(RigidPose, SlightlyBentAxesBecomeTheNearestRotation) {
   EXPECT_TRUE(rotation.isApprox(SomePose().topLeftCorner<3, 3>(), 2e-4));
 }
 
-TEST(RigidPose, WhatIsNotRigidIsRefusedByName) {
+TEST(RigidPose, OtherMatricesAreRefusedByName) {
   Eigen::Matrix4d matrix = SomePose();
   matrix(1, 3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(ErrorOf(matrix), HasSubstr("file: frames[3]: an entry is not finite"));

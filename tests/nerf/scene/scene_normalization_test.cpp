@@ -90,13 +90,13 @@ void ExpectSphere(const SceneNormalization& scene, const Vector3d& centre, doubl
   EXPECT_NEAR(scene.LengthWorldFromNormalized(1) / radius, 1, tolerance);
 }
 
-TEST(SceneNormalization, FocusOfAnOrbitIsTheOriginAndItsViewHasRadiusOne) {
+TEST(SceneNormalization, CentreOfAnOrbitIsTheOriginAndItsViewHasRadiusOne) {
   const SceneNormalization scene = NormalizeScene(Orbit({1, -2, 5}));
   ExpectSphere(scene, {1, -2, 5}, 3 * kHalfWidth);
   EXPECT_TRUE(scene.rotation.isIdentity(1e-9));
 }
 
-TEST(SceneNormalization, FewCamerasThatLookElsewhereDoNotMoveTheFocus) {
+TEST(SceneNormalization, FewCamerasThatLookElsewhereDoNotShiftTheCentre) {
   PosedImages posed = Orbit(Vector3d::Zero());
   for (const int i : {0, 1, 2, 3}) {
     const Vector3d from = posed.images[i].world_from_camera.translation();
@@ -176,7 +176,7 @@ TEST(SceneNormalization, UpOfTheCamerasBecomesZ) {
   EXPECT_TRUE((scene.rotation * -Vector3d::UnitY()).isApprox(Vector3d::UnitZ(), 1e-3));
 }
 
-TEST(SceneNormalization, CamerasThatLookDownTakeTheirBacksForUp) {
+TEST(SceneNormalization, UpOfCamerasThatLookDownIsBackward) {
   std::vector<Isometry3d> poses;
   for (int i = 0; i < 8; ++i) {
     const double azimuth = 2 * std::numbers::pi * i / 8;
@@ -187,30 +187,30 @@ TEST(SceneNormalization, CamerasThatLookDownTakeTheirBacksForUp) {
   EXPECT_TRUE((scene.rotation * Vector3d::UnitY()).isApprox(Vector3d::UnitZ(), 1e-9));
 }
 
-TEST(SceneNormalization, LookingAheadTheDepthRangeSaysHowFar) {
+TEST(SceneNormalization, DepthOfForwardFacingCamerasIsTakenFromTheDepthRange) {
   PosedImages posed = Forward(9, 0.3);
   posed.depth_range_in_world = {2, 6};
   ExpectSphere(NormalizeScene(posed), {0, 0, 3}, 3 * kHalfWidth, 0.01);
 }
 
-TEST(SceneNormalization, LookingAheadThePointsSayHowFar) {
+TEST(SceneNormalization, DepthOfForwardFacingCamerasIsTakenFromThePoints) {
   PosedImages posed = Forward(9);
   for (const double depth : {4., 5., 1000.}) AddPoint(&posed, {0, 0, depth});
   ExpectSphere(NormalizeScene(posed), {0, 0, 5}, 5 * kHalfWidth, 0.01);
 }
 
-TEST(SceneNormalization, LookingAheadAtUnknownDepthTheReachOfTheCamerasSaysHowFar) {
+TEST(SceneNormalization, DepthOfForwardFacingCamerasIsTakenFromTheirExtentAtLast) {
   const SceneNormalization scene = NormalizeScene(Forward(9));
   const Vector3d centre = scene.WorldFromNormalized(Vector3d::Zero());
   EXPECT_NEAR(centre.z(), 4 * 0.4, 0.02);
   EXPECT_NEAR(scene.LengthWorldFromNormalized(1), centre.z() * kHalfWidth, 1e-9);
 }
 
-TEST(SceneNormalization, LookingOutwardsTheCentreIsThatOfTheCameras) {
+TEST(SceneNormalization, CentreOfOutwardFacingCamerasIsThatOfTheCameras) {
   ExpectSphere(NormalizeScene(Outward(0.5, {1, 2, 3})), {1, 2, 3}, 1);
 }
 
-TEST(SceneNormalization, AllCamerasInOnePointTakeTheRadiusFromThePoints) {
+TEST(SceneNormalization, RadiusOfCamerasInOnePointIsTakenFromThePoints) {
   PosedImages posed = Outward(0, {1, 2, 3});
   ExpectSphere(NormalizeScene(posed), {1, 2, 3}, 1);
   for (const double depth : {4., 5., 1000.}) AddPoint(&posed, Vector3d(1, 2 + depth, 3));
@@ -238,7 +238,7 @@ TEST(SceneNormalization, PosesBeyondDoubleArithmeticAreRefused) {
               testing::HasSubstr("synthetic: the poses span"));
 }
 
-TEST(SceneNormalization, CamerasOfTheFoxStandAroundIt) {
+TEST(SceneNormalization, CamerasOfTheFoxAreAroundIt) {
   const PosedImages posed = sfm::ReadTransformsJson(NERF_TEST_DATA "/fox/transforms.json");
   for (const Isometry3d& pose : NormalizedPoses(posed)) {
     EXPECT_GT(pose.translation().norm(), 0.5);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "nerf/base/options.h"
+
+namespace nerf {
+
+// Which photographs are trained on, and how they are read.
+struct DataOptions {
+  int downscale = 1;
+  int test_every = 8;
+  int validation_images = 1;
+  int memory_mb = 1024;
+
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("downscale", o.downscale, "", AtLeast(1),
+           "photographs are area-averaged by this factor");
+    option("test_every", o.test_every, "", ZeroOr(AtLeast(2)),
+           "hold out images 0, 8, 16, ... by name; 0: none");
+    option("validation_images", o.validation_images, "", AtLeast(0),
+           "taken out of the training images to measure progress; 0: none");
+    option("memory_mb", o.memory_mb, "MB", AtLeast(1),
+           "for pixels; where they do not fit, an even random share is held");
+  }
+};
+
+}  // namespace nerf
