@@ -67,7 +67,8 @@ void WriteShot(const RenderedView& view, const SceneFacts& scene, const RenderAr
 // The view as a photograph of that exposure shows it; what is seen through it is not exposed.
 void Expose(const std::array<float, 3>& gains, const Eigen::Vector3f& background,
             RenderedView& view) {
-  ApplyGains(gains, SeenThrough(view.opacity.pixels, {background.data(), 3}), view.rgb.pixels);
+  ApplyGains(gains, BackgroundContribution(view.opacity.pixels, {background.data(), 3}),
+             view.rgb.pixels);
 }
 
 // The quality that is asked for, or the best at which a frame takes no longer than asked for.

@@ -117,7 +117,7 @@ void TrainingDisplay::Show(const PosesRefined& event) {
   Print(
       "poses: cameras turned by {:.3f} degrees in the median ({:.3f} at most) and shifted by "
       "{:.3g} units ({:.3g}); focal lengths changed by {:.2f} % at most\n",
-      s.median_degrees, s.most_degrees, s.median_shift, s.most_shift, 100 * s.most_focal);
+      s.median_degrees, s.max_degrees, s.median_shift, s.max_shift, 100 * s.max_focal);
 }
 
 void TrainingDisplay::Show(const TrainerEvent& event) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kParentKey[] = "parent";
 
-// Every effect with its defaults, whether it is on or not.
+// All effects turned on, with their defaults.
 const json& EffectsWithDefaults() {
   static const json all = [] {
     EffectsOptions effects;
@@ -26,10 +26,10 @@ const json& EffectsWithDefaults() {
   return all;
 }
 
-// Writes a preset or file, after the chain of its parents, over `config`.
+// Applies the parents of a preset or file, the outermost first, and then itself to `config`.
 void ApplyPreset(json& config, const std::string& preset, std::set<std::string> seen) {
   if (!seen.insert(preset).second) {
-    throw InputError("config {}: is its own parent; break the circle", preset);
+    throw InputError("config {}: is its own parent; remove the cycle", preset);
   }
   const auto& built_in = BuiltInPresets();
   const auto found = built_in.find(preset);
@@ -54,7 +54,7 @@ void CheckEncoding(const std::string& block, const kernels::HashGridOptions& o) 
                    block, o.base_resolution, o.max_resolution);
 }
 
-// "/encoding/levels" as a key
+// "encoding.levels" from "/encoding/levels".
 std::string KeyFromPointer(std::string pointer) {
   std::ranges::replace(pointer, '/', '.');
   return pointer.substr(1);
@@ -67,7 +67,7 @@ Config Checked(const json& document, const std::string& where) {
   } catch (const json::exception& error) {
     throw InputError("{}: {}", where, error.what());
   }
-  // A whole number that its option cannot hold comes back as another one.
+  // An integer that overflows its option's type changes in a round trip.
   if (const json::array_t changes = json::diff(document, JsonFromConfig(config));
       !changes.empty()) {
     throw InputError("{}: {} is out of range", where, KeyFromPointer(changes[0]["path"]));
@@ -113,7 +113,7 @@ Config WithEffect(Config config, const EffectDescriptor& effect, bool on) {
 std::set<std::string> NamedEffects(const std::string& preset,
                                    const std::vector<std::string>& assignments) {
   std::set<std::string> named;
-  const auto take = [&](const json& change) {
+  const auto add_names_in = [&](const json& change) {
     if (!change.is_object()) return;
     if (change.contains(json::json_pointer("/march/near_distance"))) named.insert(kNearPlane);
     const json effects = change.value("effects", json());
@@ -123,11 +123,11 @@ std::set<std::string> NamedEffects(const std::string& preset,
       named.insert(effect != nullptr ? effect->name : name);
     }
   };
-  for (const std::string& assignment : assignments) take(ParseAssignment(assignment));
-  // Built-in presets leave effects to the scene.
+  for (const std::string& assignment : assignments) add_names_in(ParseAssignment(assignment));
+  // Built-in presets do not decide effects.
   for (std::string file = preset; !BuiltInPresets().contains(file);) {
     const json change = ParseConfig(ReadWholeFile(file), "config " + file);
-    take(change);
+    add_names_in(change);
     if (!change.contains(kParentKey)) break;
     file = change[kParentKey];
   }

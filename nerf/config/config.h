@@ -19,8 +19,8 @@
 
 namespace nerf {
 
-// The options of every module, each declared beside its algorithm. configs/base.json holds each key
-// with its default; the blocks there have the names of the members here.
+// The options of all modules, each block declared beside its algorithm. configs/base.json contains
+// every key with its default; its blocks are named like the members here.
 struct Config {
   DataOptions data;
   kernels::HashGridOptions encoding;
@@ -40,11 +40,11 @@ struct Config {
     option("data", c.data, "how photographs are read and split");
     option("encoding", c.encoding, "hash encoding of the field");
     option("field", c.field, "networks of the field");
-    option("occupancy", c.occupancy, "grid of what may hold matter");
-    option("march", c.march, "where samples may stand on a ray");
-    option("proposal", c.proposal, "the network that places samples");
-    option("loss", c.loss, "loss of colours");
-    option("effects", c.effects, "what is simulated beyond the field; null: off");
+    option("occupancy", c.occupancy, "occupancy grid");
+    option("march", c.march, "sample placement along rays");
+    option("proposal", c.proposal, "proposal network");
+    option("loss", c.loss, "colour loss");
+    option("effects", c.effects, "effects to simulate; null: off");
     option("gradient_scaling", c.gradient_scaling, "gradients near cameras");
     option("optimizer", c.optimizer, "Adam");
     option("schedule", c.schedule, "learning rate over the training");
@@ -52,30 +52,31 @@ struct Config {
   }
 };
 
-// The texts of configs/*.json by preset name, compiled in.
+// The text of each configs/*.json by preset name, compiled into the program.
 const std::map<std::string, std::string>& BuiltInPresets();
 
-// The configuration of a preset or file, changed by assignments.
+// Loads a preset or file and applies assignments to it.
 //   preset       a built-in preset's name, or the path of a JSON file (which may name a "parent")
 //   assignments  "block.key=value", value as JSON; applied in order
 // Throws InputError naming the file and the key for an unknown key, a wrong type, or a value
 // out of range.
 Config LoadConfig(const std::string& preset, const std::vector<std::string>& assignments);
 
-// The effects that the user's own configuration decides: those that assignments name, and those
-// that a JSON file (or its parents) names.
+// The effects that the user has decided: those named by assignments, and those named by a JSON file
+// or its parents. Includes kNearPlane where march.near_distance is given.
 std::set<std::string> NamedEffects(const std::string& preset,
                                    const std::vector<std::string>& assignments);
 
-// The same configuration with one effect on or off; one that is on already keeps its options.
+// The configuration with one effect turned on or off. An effect that is already on keeps its
+// options.
 Config WithEffect(Config config, const EffectDescriptor& effect, bool on);
 
 // Every key with its default, unit, range and help, in the order of declaration.
 std::vector<OptionHelp> ConfigHelp();
-// The same as a table in Markdown, as docs/configuration.md has it.
+// The same as a Markdown table, as in docs/configuration.md.
 std::string ConfigHelpTable();
 
-// A configuration as JSON and back; reading is as strict as LoadConfig.
+// Converts a configuration to JSON and back; reading is as strict as LoadConfig.
 //   where  names the file in errors
 nlohmann::json JsonFromConfig(const Config& config);
 Config ConfigFromJson(const nlohmann::json& json, const std::string& where);

@@ -12,10 +12,10 @@ using nlohmann::json;
 
 namespace {
 
-// A whole number may stand where a real one is meant, never the other way round.
+// An integer is accepted for a real number, but not the other way round.
 bool SameKind(const json& base, const json& value) {
   if (base.is_number_float()) return value.is_number();
-  if (base.is_number_integer()) {  // none of ours is negative
+  if (base.is_number_integer()) {  // no integer option is negative
     return value.is_number_unsigned() ||
            (value.is_number_integer() && value.get<std::int64_t>() >= 0);
   }
@@ -44,7 +44,7 @@ std::string JoinKeys(const json& object) {
 void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix,
              const json& effects);
 
-// An effect's block: null turns it off, an object turns it on and changes the keys that it names.
+// An effect's block: null turns it off, an object turns it on and sets the keys it contains.
 void OverlayEffect(json& effect, const std::string& name, const json& change,
                    const std::string& where, const json& effects) {
   if (change.is_null()) {
@@ -55,7 +55,7 @@ void OverlayEffect(json& effect, const std::string& name, const json& change,
   Overlay(effect, change, where, std::string(kEffectsBlock) + "." + name, effects);
 }
 
-// Writes `change` over `base`; each key must stand in `base` with the same kind of value.
+// Applies `change` to `base`; each key must exist in `base` with a value of the same kind.
 void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix,
              const json& effects) {
   if (!change.is_object()) {
@@ -90,14 +90,14 @@ json ParseConfig(const std::string& text, const std::string& where) {
   } catch (const json::parse_error& error) {
     throw InputError("{}: is not valid JSON at byte {}; fix it there", where, error.byte);
   } catch (const json::out_of_range& error) {
-    throw InputError("{}: holds a number out of range: {}", where, error.what());
+    throw InputError("{}: contains a number out of range: {}", where, error.what());
   }
 }
 
 json ParseAssignment(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw InputError("--set {}: want block.key=value, for example train.steps=2000", assignment);
+    throw InputError("--set {}: must be block.key=value, for example train.steps=2000", assignment);
   }
   const std::string text = assignment.substr(equals + 1);
   json value = json::parse(text, nullptr, /*allow_exceptions=*/false);

@@ -5,20 +5,20 @@
 
 namespace nerf {
 
-// How a configuration is changed as JSON: strictly, so that a key which nobody reads is an error.
+// Strict changes to a configuration as JSON: an unknown key is an error.
 
-// Throws InputError naming the byte where it is no JSON.
+// Parses JSON. Throws InputError naming the byte of a syntax error.
 //   where  names the file in errors
 nlohmann::json ParseConfig(const std::string& text, const std::string& where);
 
-// "a.b=value" as {"a": {"b": value}}; value as JSON, a bare word is a string.
+// Converts "a.b=value" to {"a": {"b": value}}. The value is JSON; a bare word is a string.
+// Throws InputError where there is no key or no "=".
 nlohmann::json ParseAssignment(const std::string& assignment);
 
-// Writes `change` over `base`; each key must stand in `base` with the same kind of value. Below
-// "effects" null turns an effect off, an object turns it on, and effects may be called by the names
-// that they had a version ago.
+// Applies `change` to `base`; each key must exist in `base` with a value of the same kind. Below
+// "effects", null turns an effect off, an object turns it on, and effects may have their old names.
 //   where    names the file in errors
-//   effects  every effect's block with its defaults
+//   effects  the blocks of all effects with their defaults
 // Throws InputError naming the key.
 void OverlayConfig(nlohmann::json& base, const nlohmann::json& change, const std::string& where,
                    const nlohmann::json& effects);

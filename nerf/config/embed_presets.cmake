@@ -1,4 +1,4 @@
-# Writes OUTPUT: a C++ file with the text of each JSON file in FILES, by its name without ending.
+# Writes OUTPUT: a C++ file with the text of each JSON file in FILES, by its name without extension.
 set(text "// Made from configs/*.json by embed_presets.cmake.\n#include \"nerf/config/config.h\"\n\n")
 string(APPEND text "namespace nerf {\n\nconst std::map<std::string, std::string>& BuiltInPresets() {\n")
 string(APPEND text "  static const std::map<std::string, std::string> presets = {\n")

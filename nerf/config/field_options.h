@@ -4,8 +4,8 @@
 
 namespace nerf {
 
-// The networks behind the hash encoding; sizes as in Mueller et al. 2022, section 5.4. Stands here
-// and not beside RadianceField, whose header includes LibTorch.
+// The networks behind the hash encoding; sizes as in Mueller et al. 2022, section 5.4. Declared
+// here and not beside RadianceField, whose header includes LibTorch.
 struct FieldOptions {
   int hidden_width = 64;
   int geometry_features = 15;

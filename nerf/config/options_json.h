@@ -11,15 +11,15 @@
 
 namespace nerf {
 
-// Visitors of option blocks (nerf/base/options.h): to JSON and back, ranges, and a table for
-// people.
+// Visitors of option blocks (nerf/base/options.h): conversion to JSON and back, range checks, and
+// the help table.
 
 template <HasOptions T>
 nlohmann::json JsonFromOptions(const T& options);
 
-// Reads a document that has every key with the right kind of value.
-//   path  of the block, "march.", for errors
-// Throws InputError naming the key of an enumerator that does not exist.
+// Reads a document that contains every key with the right kind of value.
+//   path  prefix of the block's keys in errors, such as "march."
+// Throws InputError naming the key of an unknown enumerator.
 template <HasOptions T>
 void OptionsFromJson(const nlohmann::json& json, const std::string& path, T& options);
 
@@ -27,14 +27,13 @@ void OptionsFromJson(const nlohmann::json& json, const std::string& path, T& opt
 template <HasOptions T>
 void CheckRanges(const T& options, const std::string& path);
 
-// A key as people read of it.
+// A row of the help table.
 struct OptionHelp {
   std::string key;    // "march.near_distance"
   std::string value;  // its default, as JSON
   std::string unit, range, help;
 };
-// Every key of a block and of the blocks in it; blocks that may be null are described whether they
-// are or not.
+// Appends every key of a block and of its nested blocks, including optional blocks that are null.
 template <HasOptions T>
 void DescribeOptions(const T& options, const std::string& path, std::vector<OptionHelp>& table);
 

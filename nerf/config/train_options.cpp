@@ -19,7 +19,7 @@ double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, do
 void TrainOptions::Check() const {
   if (precision == kernels::Precision::kBfloat16 && engine == EngineKind::kLibTorch) {
     throw InputError(
-        "config: train.precision \"bfloat16\" is of the fused engine; remove "
+        "config: train.precision \"bfloat16\" needs the fused engine; remove "
         "train.engine=libtorch");
   }
 }

@@ -28,7 +28,7 @@ struct EnumNames<LossKind> {
                                                                      {LossKind::kMse, "mse"}};
 };
 
-// The loss of colours (nerf/render/losses.h).
+// The colour loss (nerf/render/losses.h).
 struct LossOptions {
   LossKind kind = LossKind::kHuber;
   double huber_delta = 0.1;
@@ -60,10 +60,10 @@ struct OptimizerOptions {
   }
 };
 
-// A photograph alone could be painted on a pane of glass right before its camera: samples near the
-// camera get gradients from many rays, those where the scene is from few. Scaling the gradients of
-// a sample at distance t by min(1, (t / full_distance)^2) undoes that. Source: Philip and
-// Deschaintre 2023, "Floaters No More".
+// Space close to a camera is sampled more densely than the scene and gets larger gradients, which
+// causes floaters there. Scaling the gradients of a sample at distance t by
+// min(1, (t / full_distance)^2) compensates for that. Source: Philip and Deschaintre 2023,
+// "Floaters No More: Radiance Field Gradient Scaling for Improved Near-Camera Training".
 struct GradientScalingOptions {
   double full_distance = 2.0;
 
@@ -74,7 +74,7 @@ struct GradientScalingOptions {
   }
 };
 
-// The learning rate rises linearly, then falls along half a cosine to its final value.
+// Learning-rate schedule: linear warm-up, then cosine decay to the final value.
 struct ScheduleOptions {
   int warmup_steps = 50;
   double final_factor = 0.01;
@@ -86,8 +86,8 @@ struct ScheduleOptions {
            "last learning rate over the highest");
   }
 };
-// The learning rate at a step over the configured one.
-//   progress  in [0, 1], of the whole run
+// The learning rate at a step, divided by the configured one.
+//   progress  fraction of the whole run, in [0, 1]
 double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, double progress);
 
 struct TrainOptions {
@@ -103,7 +103,7 @@ struct TrainOptions {
   std::int64_t checkpoint_every = 500;
   std::int64_t validate_every = 250;
 
-  // What single ranges cannot say. Throws InputError.
+  // Checks combinations of options that single ranges cannot express. Throws InputError.
   void Check() const;
 
   template <class Self, class Visitor>

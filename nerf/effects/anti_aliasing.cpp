@@ -12,15 +12,15 @@
 namespace nerf {
 namespace {
 
-// Of a uniform distribution over a unit.
-constexpr float kDeviation = 0.28867513f;
-// Half a unit of the cube is two of contracted space.
+// Standard deviation of a uniform distribution of width 1.
+constexpr float kUniformDeviation = 0.28867513f;
+// The ball of radius 2 of contracted space fills the unit cube.
 constexpr float kCubeFromContracted = 0.25f;
-// From here on erf is 1 in float.
-constexpr float kSharp = 4;
+// Beyond this erf rounds to 1 in float.
+constexpr float kErfSaturation = 4;
 
-constexpr double kScales = 2.2;  // largest over smallest of a point, median over sightings
-constexpr double kSmallest = 0.1, kLargest = 0.9;  // quantiles of a point's scales
+constexpr double kScaleRatio = 2.2;  // threshold: largest over smallest scale of a point, median
+constexpr double kSmallest = 0.1, kLargest = 0.9;  // as these quantiles of a point's scales
 
 }  // namespace
 
@@ -28,7 +28,7 @@ std::vector<float> Footprints(const RayBatch& rays, std::span<const std::int64_t
                               std::span<const float> t, const AntiAliasingOptions& options) {
   std::vector<float> footprint(t.size(), 0.0f);
   if (rays.spread.empty()) return footprint;
-  const float unit = static_cast<float>(options.pixels) * kDeviation * kCubeFromContracted;
+  const float unit = static_cast<float>(options.pixels) * kUniformDeviation * kCubeFromContracted;
   for (std::size_t i = 0; i < t.size(); ++i) {
     const std::int64_t r = ray[i];
     const Eigen::Vector3f x =
@@ -44,20 +44,20 @@ std::vector<float> AntiAliasingWeights(const kernels::HashGridLayout& layout,
   const std::size_t levels = layout.levels.size();
   std::vector<float> weights(levels * footprint.size());
   for (std::size_t i = 0; i < footprint.size(); ++i) {
-    // Of a point infinite, whose error function is 1.
-    const float reach = 1 / (std::sqrt(8.0f) * footprint[i]);
+    // Infinite for a footprint of 0, whose weights are then 1.
+    const float inverse = 1 / (std::sqrt(8.0f) * footprint[i]);
     for (std::size_t l = 0; l < levels; ++l) {
-      const float x = reach / static_cast<float>(layout.levels[l].resolution);
-      weights[i * levels + l] = x > kSharp ? 1.0f : std::erf(x);
+      const float x = inverse / static_cast<float>(layout.levels[l].resolution);
+      weights[i * levels + l] = x > kErfSaturation ? 1.0f : std::erf(x);
     }
   }
   return weights;
 }
 
 Verdict JudgeAntiAliasing(const PosedImages& posed) {
-  std::vector<double> ratios;  // of each sighting: what many photographs see counts more
+  std::vector<double> ratios;  // one per sighting: points with long tracks count more
   for (const SparsePoint& point : posed.points) {
-    std::vector<double> footprints;  // of a pixel at the point, world units
+    std::vector<double> footprints;  // width of a pixel at the point, world units
     for (const TrackElement& seen : point.track) {
       const PosedImage& image = posed.images[seen.image];
       const double distance = (point.x_in_world - image.world_from_camera.translation()).norm();
@@ -69,13 +69,12 @@ Verdict JudgeAntiAliasing(const PosedImages& posed) {
       ratios.insert(ratios.end(), point.track.size(), ratio);
     }
   }
-  if (ratios.empty()) return Undecided(kAntiAliasing.name, "no sightings of points to tell from");
+  if (ratios.empty()) return Undecided(kAntiAliasing.name, "no tracks of sparse points");
   const double median = Quantile(ratios, 0.5);
-  return Measured(
-      kAntiAliasing.name, median, kScales,
-      fmt::format("photographs show a point at scales {:.1f} to 1 apart (threshold {:.1f} "
-                  "to 1)",
-                  median, kScales));
+  return Measured(kAntiAliasing.name, median, kScaleRatio,
+                  fmt::format("the scales at which photographs show a point differ by a factor of "
+                              "{:.1f} (threshold {:.1f})",
+                              median, kScaleRatio));
 }
 
 const EffectDescriptor kAntiAliasing = {

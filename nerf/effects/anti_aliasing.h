@@ -11,14 +11,13 @@
 
 namespace nerf {
 
-// A pixel does not see a point but a patch, which grows with the distance. What is finer than the
-// patch is averaged in it: each level of the encoding counts by how much of its cells the patch
-// leaves. Without it a field that is seen from near and far must show both the sharp and the
-// averaged with one value at each place. Source: Barron et al. 2023, "Zip-NeRF", section 3
-// (downweighting by erf), with one Gaussian at each sample's place.
+// A pixel averages a patch of the surface that grows with the distance (its footprint). Levels of
+// the hash encoding whose cells are smaller than the footprint get less weight. Without it the
+// field has one value per point for both close-up and distant photographs. Source: Barron et al.
+// 2023, "Zip-NeRF", section 3 (downweighting by erf), with one Gaussian per sample.
 struct AntiAliasingOptions {
-  // More than one, for a sample in the middle of a pixel stands for all of it: 4 was best of 1, 2,
-  // 4 and 8 on validation photographs, with 8.
+  // More than 1, because one sample at the pixel centre represents the whole pixel: of 1, 2, 4 and
+  // 8, the values 4 and 8 were best on validation photographs.
   double pixels = 4;
 
   template <class Self, class Visitor>
@@ -27,20 +26,22 @@ struct AntiAliasingOptions {
   }
 };
 
-// The standard deviation of the patch at each sample, in the unit cube: pixels / sqrt(12) times
-// spread times t, as the contraction shrinks lengths across the radius.
-//   ray, t  [S]; rays have a spread, else the patches are points
+// The standard deviation of the footprint at each sample, in units of the unit cube: pixels /
+// sqrt(12) * spread * t, scaled as the contraction scales lengths perpendicular to the radius.
+//   ray, t   [S]
+//   returns  [S]; 0 where the rays have no spread
+// Not differentiable.
 std::vector<float> Footprints(const RayBatch& rays, std::span<const std::int64_t> ray,
                               std::span<const float> t, const AntiAliasingOptions& options);
 
-// The weight of each level of the encoding, given the patch that a sample stands for: erf(1 /
-// (sqrt(8) footprint resolution)), 1 for a point.
+// The weight of each level of the encoding for a sample's footprint: erf(1 / (sqrt(8) footprint
+// resolution)), which is 1 for a footprint of 0.
 //   footprint  [S]    returns [S, levels]
 std::vector<float> AntiAliasingWeights(const kernels::HashGridLayout& layout,
                                        std::span<const float> footprint);
 
-// How much the scale changes at which photographs show the same point: what is one pixel from far
-// away is many from nearby. Undecided where no point has a track.
+// Measures by how much the scales (distance over focal length) at which photographs show the same
+// point differ. Undecided where no point has a track.
 Verdict JudgeAntiAliasing(const PosedImages& posed);
 
 extern const EffectDescriptor kAntiAliasing;

@@ -10,9 +10,9 @@ Verdict JudgeBackground(const PointShares& shares) {
       fmt::format("{:.1f} % of the points are more than {:.0f} radii away (threshold {:.1f} %){}",
                   100 * shares.far, kFarRadius, 100 * kFarAway,
                   shares.far >= kFarAway && !IsBeforeBackground(shares)
-                      ? ", but contracted space holds them with those before them"
+                      ? ", but there are points in between: contracted space represents both"
                       : ""));
-  // It is decided together with `unbounded`, so one is as conclusive as the other.
+  // A decision together with `unbounded`, which is a fact: both are equally conclusive.
   if (!verdict.on) return verdict;
   return Fact(kBackground.name, IsBeforeBackground(shares), shares.far, verdict.evidence);
 }
@@ -26,7 +26,7 @@ const EffectDescriptor kBackground = {
     .judge =
         [](const CaptureEvidence& e) {
           if (e.HasAlpha()) {
-            return Fact(kBackground.name, false, 0, "photographs with alpha show none");
+            return Fact(kBackground.name, false, 0, "photographs with alpha have no background");
           }
           return e.HasTracks() ? JudgeBackground(e.shares)
                                : Undecided(kBackground.name, e.unknown_because);

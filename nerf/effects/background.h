@@ -5,11 +5,11 @@
 
 namespace nerf {
 
-// Surroundings without end, such as a sky, that differ in each direction: a learned colour behind
-// everything (nerf/field/background.h).
+// Surroundings at infinity, such as a sky: a learned colour per direction behind everything else
+// (nerf/field/background.h).
 struct BackgroundOptions {
-  // Few photographs look into one direction: of a finer map each paints its own part (64 was best
-  // of 16, 32, 64 and 128 on validation photographs of generated captures).
+  // In a finer map, texels that few photographs cover overfit: 64 was best of 16, 32, 64 and 128 on
+  // validation photographs of generated captures.
   int resolution = 64;
 
   template <class Self, class Visitor>
@@ -19,7 +19,7 @@ struct BackgroundOptions {
   }
 };
 
-// On where points are far away and nothing stands between them and what is near.
+// On where there are distant points and hardly any between them and the near ones.
 Verdict JudgeBackground(const PointShares& shares);
 
 extern const EffectDescriptor kBackground;

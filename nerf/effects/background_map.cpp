@@ -9,7 +9,7 @@
 namespace nerf {
 namespace {
 
-// As TruncatedExp of the field holds its argument.
+// As the field's TruncatedExp clamps its argument.
 constexpr float kExpLimit = 15.0f;
 
 }  // namespace
@@ -23,7 +23,7 @@ BackgroundMap::Texels BackgroundMap::TexelsOf(std::span<const float, 3> directio
   const double v = std::clamp(std::acos(z) / std::numbers::pi * rows - 0.5, 0.0, rows - 1.0);
   const double left = std::floor(u), top = std::min(std::floor(v), rows - 2.0);
   const auto across = static_cast<float>(u - left), down = static_cast<float>(v - top);
-  // Round the world: the last column's neighbour is the first.
+  // Longitude wraps around: the first column follows the last.
   const auto column = static_cast<std::int64_t>(left);
   const std::int64_t columns_of[2] = {(column + columns) % columns, (column + 1) % columns};
   Texels texels;

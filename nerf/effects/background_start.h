@@ -7,16 +7,17 @@
 
 namespace nerf {
 
-// What training of a background starts from. Surroundings without end look the same in one
-// direction, whichever photograph shows them; what stands before them does not. So each texel
-// becomes the median of the largest group of photographs that agree on it, two at least; where none
-// agree, what a map of half the rows has there that is made in the same way. In the coarsest one
-// (16 rows or fewer) these texels are the mean of those beside them. Where photographs hardly ever
-// agree, as their exposures differ, it has the median of them all.
-//   photograph  [R] which
+// Initializes a background map from the training photographs. A background at infinity has the
+// same colour in a given direction in every photograph; objects in front of it do not. So each
+// texel is the median of the largest group of photographs (at least two) that agree on its colour.
+// Texels without agreement are interpolated from a map of half the rows, initialized the same way;
+// in the coarsest map (16 rows or fewer) they are filled from their neighbours. Where photographs
+// hardly ever agree, because exposures differ, the coarsest map has the median of all photographs.
+//   photograph  [R] index of the photograph of each ray
 //   direction   [R,3] unit vectors
 //   rgb         [R,3] in the encoding of the map
-void StartFromPhotographs(std::span<const std::int64_t> photograph,
+//   map         rows and encoding are given; raw is the result
+void InitializeBackground(std::span<const std::int64_t> photograph,
                           std::span<const float> direction, std::span<const float> rgb,
                           BackgroundMap& map);
 

@@ -12,11 +12,11 @@
 namespace nerf {
 namespace {
 
-// Points that are known well enough.
+// Points that are accurate enough.
 constexpr std::size_t kFewestSightings = 3;
-constexpr double kLargestError = 2;  // pixels
+constexpr double kLargestError = 2;  // reprojection error, pixels
 
-constexpr double kFewPhotographs = 15;  // that see a point, median
+constexpr double kFewPhotographs = 15;  // threshold: photographs with a point in view, median
 
 }  // namespace
 
@@ -82,7 +82,7 @@ Verdict JudgeDepthSupervision(const PosedImages& posed,
   const double median = Quantile(photographs, 0.5);
   Verdict verdict =
       Fact(kDepthSupervision.name, median < kFewPhotographs, median,
-           fmt::format("a point is in the view of {:.0f} photographs (called for below {:.0f})",
+           fmt::format("a point is in view of {:.0f} photographs (threshold: fewer than {:.0f})",
                        median, kFewPhotographs));
   verdict.threshold = kFewPhotographs;
   return verdict;

@@ -5,22 +5,22 @@
 
 namespace nerf {
 
-// What the program knows of an effect beside its options and its algorithm, which stand in the same
-// file. EffectsOptions (effects.h) lists all of them.
+// The description of an effect; its options and its algorithm are in the same file.
+// EffectsOptions (effects.h) lists all effects.
 struct EffectDescriptor {
-  const char* name;      // its key in the configuration's `effects`, and in --effects
-  const char* old_name;  // accepted for one version more; null where it had no other
+  const char* name;      // key in the configuration's `effects`, and in --effects
+  const char* old_name;  // alias, accepted for one more version; null: none
   const char* help;      // what it simulates, one line
-  const char* hook;      // where it stands in a ray's path
-  // Prefix of its trained parameters in a checkpoint; null where it has none.
+  const char* hook;      // the stage of a ray's path at which it runs
+  // Prefix of its trained parameters in a checkpoint; null: it has none.
   const char* parameters = nullptr;
-  // Whether a capture calls for it.
+  // Decides whether a capture calls for it.
   Verdict (*judge)(const CaptureEvidence& evidence);
-  // Steps of a paired trial, and whether one is worth its time where there is no evidence at all.
+  // Steps of a paired trial, and whether to try the effect even without any evidence.
   int trial_steps = 200;
   bool tried_without_evidence = false;
-  // Whether it learns something of each photograph that held-out photographs lack: it is then
-  // measured on halves of photographs whose other halves are trained on.
+  // Whether it has trained parameters per photograph, which held-out photographs lack: it is then
+  // measured on the right halves of photographs whose left halves are trained on.
   bool measured_on_halves = false;
 };
 

@@ -16,8 +16,8 @@
 
 namespace nerf {
 
-// The effects that a scene may call for. A block that is there is an effect that is simulated; one
-// that is not there costs nothing.
+// The effects that can be simulated. An effect whose block is present is on; one whose block is
+// absent costs nothing.
 struct EffectsOptions {
   std::optional<MaskOptions> masks;
   std::optional<UnboundedOptions> unbounded = UnboundedOptions();
@@ -29,7 +29,7 @@ struct EffectsOptions {
   std::optional<PoseRefinementOptions> pose_refinement;
   std::optional<AntiAliasingOptions> anti_aliasing;
 
-  // Calls visit(descriptor, block) for each effect: the one list of them.
+  // Calls visit(descriptor, block) for each effect. This is the only list of all effects.
   template <class Self, class Visitor>
   static void VisitEffects(Self& effects, Visitor&& visit) {
     visit(kMasks, effects.masks);
@@ -54,7 +54,7 @@ struct EffectsOptions {
 // The descriptors of all effects.
 const std::vector<const EffectDescriptor*>& AllEffects();
 
-// The effect of a name, or of the name that it had a version ago; null where there is none.
+// The effect with this name or alias; null if there is none.
 const EffectDescriptor* FindEffect(const std::string& name);
 
 // The names of all effects.

@@ -8,7 +8,7 @@
 namespace nerf {
 namespace {
 
-constexpr double kStops = 0.1;  // standard deviation over the photographs that calls for the effect
+constexpr double kStops = 0.1;  // threshold: standard deviation over the photographs
 
 }  // namespace
 
@@ -36,7 +36,7 @@ const EffectDescriptor kExposure = {
           return e.stops.empty() ? Undecided(kExposure.name, e.unknown_because)
                                  : JudgeExposure(e.stops, e.stops_source);
         },
-    // Photographs often differ in it, and it may gain ten decibels.
+    // Exposures often differ, and the gain can be ten decibels.
     .tried_without_evidence = true,
 };
 

@@ -7,16 +7,16 @@
 
 namespace nerf {
 
-// Photographs whose exposure or white balance differ: a gain for each photograph and channel
-// (nerf/field/exposure.h).
+// Exposure compensation: a gain per photograph and channel, for photographs whose exposure or white
+// balance differ (nerf/field/exposure.h).
 struct ExposureOptions {
   template <class Self, class Visitor>
   static void Options(Self&, Visitor&&) {}
 };
 
-// How far exposures are from each other.
-//   stops   of each photograph against the mean, log2 of light; one at least
-//   source  says what shows them
+// Judges by the standard deviation of the exposures.
+//   stops   exposure of each photograph relative to the mean, log2 of light; at least one
+//   source  where they were measured, as a phrase of the evidence
 Verdict JudgeExposure(const std::vector<double>& stops, const std::string& source);
 
 extern const EffectDescriptor kExposure;

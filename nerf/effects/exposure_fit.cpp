@@ -5,11 +5,11 @@
 namespace nerf {
 
 std::array<float, 3> FitGains(std::span<const float> rendered, std::span<const float> photograph,
-                              std::span<const float> through, ColorEncoding encoding) {
+                              std::span<const float> background, ColorEncoding encoding) {
   std::array<double, 3> both{}, own{};
   for (std::size_t i = 0; i < photograph.size(); ++i) {
     if (encoding == ColorEncoding::kSrgb && (photograph[i] <= 0 || photograph[i] >= 1)) continue;
-    const double behind = through.empty() ? 0.0 : static_cast<double>(through[i]);
+    const double behind = background.empty() ? 0.0 : static_cast<double>(background[i]);
     const double of_scene = static_cast<double>(rendered[i]) - behind;
     both[i % 3] += of_scene * (static_cast<double>(photograph[i]) - behind);
     own[i % 3] += of_scene * of_scene;
@@ -21,20 +21,21 @@ std::array<float, 3> FitGains(std::span<const float> rendered, std::span<const f
   return gains;
 }
 
-void ApplyGains(const std::array<float, 3>& gains, std::span<const float> through,
+void ApplyGains(const std::array<float, 3>& gains, std::span<const float> background,
                 std::span<float> rgb) {
   for (std::size_t i = 0; i < rgb.size(); ++i) {
-    const float behind = through.empty() ? 0.0f : through[i];
+    const float behind = background.empty() ? 0.0f : background[i];
     rgb[i] = gains[i % 3] * (rgb[i] - behind) + behind;
   }
 }
 
-std::vector<float> SeenThrough(std::span<const float> opacity, std::span<const float> background) {
-  std::vector<float> through(3 * opacity.size());
-  for (std::size_t i = 0; i < through.size(); ++i) {
-    through[i] = (1 - opacity[i / 3]) * background[background.size() == 3 ? i % 3 : i];
+std::vector<float> BackgroundContribution(std::span<const float> opacity,
+                                          std::span<const float> background) {
+  std::vector<float> contribution(3 * opacity.size());
+  for (std::size_t i = 0; i < contribution.size(); ++i) {
+    contribution[i] = (1 - opacity[i / 3]) * background[background.size() == 3 ? i % 3 : i];
   }
-  return through;
+  return contribution;
 }
 
 }  // namespace nerf

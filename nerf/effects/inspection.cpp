@@ -34,7 +34,7 @@ Inspection InspectionOf(const CaptureEvidence& evidence) {
   return inspection;
 }
 
-// The frame in which what bounds the scene is the unit ball.
+// The frame in which the ball that bounds the scene is the unit ball.
 SceneNormalization BoundedFrame(const CaptureEvidence& evidence) {
   const Verdict unbounded = kUnbounded.judge(evidence);
   if (unbounded.on) return evidence.frame;

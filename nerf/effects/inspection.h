@@ -11,26 +11,26 @@
 
 namespace nerf {
 
-// What a capture calls for, found from what is there before anything is trained.
+// The effects that a capture calls for, decided before anything is trained.
 struct Inspection {
   std::vector<Verdict> verdicts;
-  // Exposure of each photograph against the mean: as the sparse points show it, else as EXIF tells
-  // of it; empty: unknown.
+  // Exposure of each photograph relative to the mean, log2: from the sparse points, else from EXIF;
+  // empty: unknown.
   std::vector<double> stops;
   std::vector<AngleResiduals> residuals;  // empty: no sparse points
-  // NormalizeScene; where alpha bounds the scene, so that its ball is the unit ball.
+  // NormalizeScene; where the scene is bounded, the frame in which its ball is the unit ball.
   SceneNormalization normalized_from_world;
   std::string warning;  // about the input, one line; or empty
 };
 
-// Collects the evidence and lets every effect judge it.
+// Collects the evidence, and the verdict of every effect on it.
 //   read                  called with the number of photographs read
-//   may_learn_background  else contracted space must hold what is far
+//   may_learn_background  if false, contracted space has to represent distant points
 // Throws InputError naming a mask that is broken.
 Inspection Inspect(const PosedImages& posed, const std::function<void(int)>& read = {},
                    bool may_learn_background = true);
 
-// What photographs alone show, before their poses are known: alpha, linear radiance, masks, EXIF.
+// As Inspect, from photographs alone, before poses are known: alpha, linear radiance, masks, EXIF.
 //   photographs  without poses and cameras
 // Throws InputError naming a mask that is broken.
 Inspection InspectPhotographs(const PosedImages& photographs);

@@ -13,19 +13,18 @@ namespace nerf {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 480;
-constexpr int kLeft = 70, kTop = 50, kBottom = 60, kMiddle = 90,
-              kRight = 20;  // about the two sides
+constexpr int kLeft = 70, kTop = 50, kBottom = 60, kMiddle = 90, kRight = 20;  // margins
 constexpr int kSideWidth = (kWidth - kLeft - kMiddle - kRight) / 2;
 constexpr int kSideHeight = kHeight - kTop - kBottom;
-constexpr int kTitle = 16, kLabel = 13;                      // sizes of letters, pixels
-constexpr int kLines = 4;                                    // of the scale
-constexpr double kSmallestStops = 0.1, kSmallestChange = 2;  // that a scale reaches to
+constexpr int kTitle = 16, kLabel = 13;                      // text sizes, pixels
+constexpr int kLines = 4;                                    // intervals between grid lines
+constexpr double kSmallestStops = 0.1, kSmallestChange = 2;  // smallest range of an axis
 
 using Rgb = std::array<float, 3>;
 constexpr Rgb kGrid = {0.87f, 0.87f, 0.87f}, kAxis = {0.35f, 0.35f, 0.35f};
 constexpr Rgb kBar = {0.18f, 0.42f, 0.69f}, kLight = {0.70f, 0.81f, 0.92f};
 
-// 1, 2 or 5 times a power of ten.
+// Rounds up to 1, 2 or 5 times a power of ten.
 double RoundedUp(double value) {
   const double power = std::pow(10, std::floor(std::log10(value)));
   for (const double step : {1.0, 2.0, 5.0}) {
@@ -34,23 +33,24 @@ double RoundedUp(double value) {
   return 10 * power;
 }
 
-// One side of the picture: numbers across and upwards.
-class Side {
+// One of the two plots of the picture.
+class Plot {
  public:
-  Side(Image& image, int left, double lowest, double highest)
+  Plot(Image& image, int left, double lowest, double highest)
       : image_(image), left_(left), lowest_(lowest), highest_(highest) {}
 
-  //   x  from 0 to 1
-  int Across(double x) const { return left_ + static_cast<int>(std::lround(x * kSideWidth)); }
-  int Up(double y) const {
+  // Pixel coordinates of a position on the axes.
+  //   x  from 0 to 1    y  from lowest to highest
+  int Column(double x) const { return left_ + static_cast<int>(std::lround(x * kSideWidth)); }
+  int Row(double y) const {
     const double share = (y - lowest_) / (highest_ - lowest_);
     return kTop + kSideHeight - static_cast<int>(std::lround(share * kSideHeight));
   }
-  // From x0 to x1 (shares) and between two numbers, one pixel thick at least.
+  // Fills a rectangle, at least one pixel thick.
   void Fill(double x0, double x1, double y0, double y1, const Rgb& color) {
-    const int top = std::min(Up(y0), Up(y1)), bottom = std::max(Up(y0), Up(y1));
+    const int top = std::min(Row(y0), Row(y1)), bottom = std::max(Row(y0), Row(y1));
     for (int y = std::max(0, top); y <= std::min(kHeight - 1, bottom); ++y) {
-      for (int x = Across(x0); x < std::max(Across(x1), Across(x0) + 1); ++x) {
+      for (int x = Column(x0); x < std::max(Column(x1), Column(x0) + 1); ++x) {
         std::ranges::copy(color, image_.At(x, y));
       }
     }
@@ -59,19 +59,19 @@ class Side {
     for (int line = 0; line <= kLines; ++line) {
       const double y = lowest_ + (highest_ - lowest_) * line / kLines;
       Fill(0, 1, y, y, std::fabs(y) < 1e-9 ? kAxis : kGrid);
-      DrawText(fmt::format("{:.3g}", std::fabs(y) < 1e-9 ? 0.0 : y), left_ - 8, Up(y) + 5, kLabel,
+      DrawText(fmt::format("{:.3g}", std::fabs(y) < 1e-9 ? 0.0 : y), left_ - 8, Row(y) + 5, kLabel,
                image_, TextAlign::kRight);
     }
   }
-  void Letters(const std::string& title, const std::string& below) {
+  void Titles(const std::string& title, const std::string& x_axis) {
     DrawText(title, left_, kTop - 20, kTitle, image_);
-    DrawText(below, Across(0.5), kHeight - 14, kLabel, image_, TextAlign::kCenter);
+    DrawText(x_axis, Column(0.5), kHeight - 14, kLabel, image_, TextAlign::kCenter);
   }
   void Tick(double x, const std::string& text) {
-    DrawText(text, Across(x), kTop + kSideHeight + 20, kLabel, image_, TextAlign::kCenter);
+    DrawText(text, Column(x), kTop + kSideHeight + 20, kLabel, image_, TextAlign::kCenter);
   }
-  void Nothing(const std::string& why) {
-    DrawText(why, Across(0.5), kTop + kSideHeight / 2, kTitle, image_, TextAlign::kCenter);
+  void NoData(const std::string& reason) {
+    DrawText(reason, Column(0.5), kTop + kSideHeight / 2, kTitle, image_, TextAlign::kCenter);
   }
 
  private:
@@ -84,18 +84,18 @@ void DrawExposures(const std::vector<double>& stops, Image& image) {
   double largest = kSmallestStops;
   for (const double s : stops) largest = std::max(largest, std::fabs(s));
   largest = RoundedUp(largest);
-  Side side(image, kLeft, -largest, largest);
-  side.Letters("exposure of each photograph against the mean, stops",
-               "photographs in the order of their names");
-  if (stops.empty()) return side.Nothing("nothing tells of exposures");
-  side.Grid();
+  Plot plot(image, kLeft, -largest, largest);
+  plot.Titles("exposure of each photograph relative to the mean, stops",
+              "photographs in the order of their names");
+  if (stops.empty()) return plot.NoData("no evidence on exposures");
+  plot.Grid();
   const auto count = static_cast<double>(stops.size());
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const auto at = static_cast<double>(i);
-    side.Fill((at + 0.15) / count, (at + 0.85) / count, 0, stops[i], kBar);
+    plot.Fill((at + 0.15) / count, (at + 0.85) / count, 0, stops[i], kBar);
   }
-  side.Tick(0.5 / count, "1");
-  side.Tick(1 - 0.5 / count, fmt::format("{}", stops.size()));
+  plot.Tick(0.5 / count, "1");
+  plot.Tick(1 - 0.5 / count, fmt::format("{}", stops.size()));
 }
 
 void DrawResiduals(const std::vector<AngleResiduals>& residuals, Image& image) {
@@ -104,20 +104,20 @@ void DrawResiduals(const std::vector<AngleResiduals>& residuals, Image& image) {
     largest = std::max(largest, r.quartiles[2]);
     widest = std::max(widest, r.degrees + 2.5);
   }
-  Side side(image, kLeft + kSideWidth + kMiddle, 0, RoundedUp(largest));
-  side.Letters("change of points over what texture explains: median, quartiles",
-               "degrees between the view and where the point is seen from on average");
-  if (residuals.empty()) return side.Nothing("no sparse points to tell from");
-  side.Grid();
-  side.Fill(0, 1, 1, 1, kAxis);  // as much as texture explains
+  Plot plot(image, kLeft + kSideWidth + kMiddle, 0, RoundedUp(largest));
+  plot.Titles("colour change of points over what texture explains: median, quartiles",
+              "degrees between the view and the mean view of the point");
+  if (residuals.empty()) return plot.NoData("no sparse points");
+  plot.Grid();
+  plot.Fill(0, 1, 1, 1, kAxis);  // as much as texture explains
   for (const AngleResiduals& r : residuals) {
     const double x0 = (r.degrees - 2) / widest, x1 = (r.degrees + 2) / widest;
-    side.Fill(x0, x1, r.quartiles[0], r.quartiles[2], kLight);
+    plot.Fill(x0, x1, r.quartiles[0], r.quartiles[2], kLight);
     const double thick = RoundedUp(largest) / kSideHeight;
-    side.Fill(x0, x1, r.quartiles[1] - thick, r.quartiles[1] + thick, kBar);
+    plot.Fill(x0, x1, r.quartiles[1] - thick, r.quartiles[1] + thick, kBar);
   }
   for (int degrees = 0; degrees <= widest; degrees += 10) {
-    side.Tick(degrees / widest, fmt::format("{}", degrees));
+    plot.Tick(degrees / widest, fmt::format("{}", degrees));
   }
 }
 

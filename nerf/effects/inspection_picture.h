@@ -5,9 +5,9 @@
 
 namespace nerf {
 
-// What Inspect found out, to look at, on white. Left: the exposure of each photograph in stops, in
-// their order. Right: by how much more than their texture explains (1) points change, against the
-// angle from which they are seen: median and quartiles. A side of which nothing is known says so.
+// The result of Inspect as two plots on white. Left: the exposure of each photograph in stops, in
+// their order. Right: how much the colours of points change, relative to what their texture
+// explains (1), by viewing angle: median and quartiles. A plot without data says so.
 //   returns  3 channels, sRGB
 Image PictureOf(const Inspection& inspection);
 

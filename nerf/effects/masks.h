@@ -15,20 +15,21 @@ struct EnumNames<MaskMeaning> {
       {MaskMeaning::kIgnore, "ignore"}, {MaskMeaning::kEmpty, "empty"}};
 };
 
-// Black pixels of the photographs' masks: "ignore", what stands there is not of the scene (a
-// passer-by, the photographer's finger) and is never drawn; or "empty", nothing stands there (a
-// subject that was cut out), as where alpha is 0. Photographs are read so (LoadPhotograph in
-// nerf/scene/photograph.h).
+// The meaning of pixels that are black in a photograph's mask: "ignore", they do not show the scene
+// (a passer-by, the photographer's finger) and are not trained on; or "empty", nothing is there (a
+// subject that was cut out), as where alpha is 0. Applied by LoadPhotograph
+// (nerf/scene/photograph.h).
 struct MaskOptions {
   MaskMeaning meaning = MaskMeaning::kIgnore;
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
-    option("meaning", o.meaning, "black pixels of a mask: ignore them, or nothing stands there");
+    option("meaning", o.meaning,
+           "pixels that are black in a mask are ignored, or show empty space");
   }
 };
 
-// What masks mean to those who read photographs; none where the effect is not simulated.
+// The meaning of masks for LoadPhotograph; nullopt where the effect is off.
 inline std::optional<MaskMeaning> MeaningOf(const std::optional<MaskOptions>& masks) {
   return masks ? std::optional(masks->meaning) : std::nullopt;
 }

@@ -11,8 +11,8 @@
 namespace nerf {
 namespace {
 
-constexpr double kNearest = 0.01;       // share of sightings that may be nearer than "the nearest"
-constexpr double kShareOfTheWay = 0.7;  // to them, in which nothing stands
+constexpr double kNearest = 0.01;         // quantile of distances that counts as the nearest
+constexpr double kNearPlaneFactor = 0.7;  // near plane over the distance of the nearest points
 
 }  // namespace
 
@@ -26,9 +26,9 @@ Verdict JudgeNearPlane(const PosedImages& posed, const SceneNormalization& norma
   }
   const double nearest = Quantile(distances, kNearest);
   const double near =
-      std::clamp(kShareOfTheWay * nearest, MarchOptions().near_distance, kFarRadius);
+      std::clamp(kNearPlaneFactor * nearest, MarchOptions().near_distance, kFarRadius);
   Verdict verdict = Fact(kNearPlane, near > MarchOptions().near_distance, near,
-                         fmt::format("the nearest points are {:.2f} radii before a camera, so rays "
+                         fmt::format("the nearest points are {:.2f} radii from a camera, so rays "
                                      "begin at {:.2f}",
                                      nearest, near));
   verdict.assignment = fmt::format("{}={:.3f}", kNearKey, near);

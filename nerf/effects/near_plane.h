@@ -4,8 +4,8 @@
 
 namespace nerf {
 
-// Where rays may begin (march.near_distance): whatever stands nearer to a camera than most of the
-// way to the nearest points is fog that no photograph shows. No effect, but decided as they are.
+// The near plane (march.near_distance): 0.7 of the distance from a camera to its nearest points.
+// Density closer than that would be floaters. Not an effect, but decided in the same way.
 //   posed  with points and tracks
 Verdict JudgeNearPlane(const PosedImages& posed, const SceneNormalization& normalized_from_world);
 

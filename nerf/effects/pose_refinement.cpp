@@ -10,7 +10,7 @@
 namespace nerf {
 namespace {
 
-constexpr double kWrongPixels = 1.25;  // median over sightings, pixels of the photographs
+constexpr double kWrongPixels = 1.25;  // threshold: median reprojection error, pixels
 
 }  // namespace
 
@@ -24,11 +24,11 @@ Verdict JudgePoseRefinement(const PosedImages& posed) {
       if (pixel) pixels.push_back((*pixel - seen.pixel).norm());
     }
   }
-  if (pixels.empty()) return Undecided(kPoseRefinement.name, "no sightings of points to tell from");
+  if (pixels.empty()) return Undecided(kPoseRefinement.name, "no tracks of sparse points");
   const double median = Quantile(pixels, 0.5);
   return Measured(kPoseRefinement.name, median, kWrongPixels,
-                  fmt::format("points are seen {:.2f} pixels from where the poses put them "
-                              "(threshold {:.2f})",
+                  fmt::format("the median reprojection error of points is {:.2f} pixels (threshold "
+                              "{:.2f})",
                               median, kWrongPixels));
 }
 
@@ -43,7 +43,7 @@ const EffectDescriptor kPoseRefinement = {
           return e.HasTracks() ? JudgePoseRefinement(*e.posed)
                                : Undecided(kPoseRefinement.name, e.unknown_because);
         },
-    .trial_steps = 400,  // poses must converge before they gain anything
+    .trial_steps = 400,  // poses have to converge before quality improves
     .measured_on_halves = true,
 };
 

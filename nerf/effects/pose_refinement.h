@@ -20,16 +20,15 @@ struct PoseRefinementOptions {
   }
 };
 
-// Where a photograph was taken, as far as the refinement of poses must know: normalized frame.
+// The pose of a photograph's camera, as far as pose refinement needs it; normalized frame.
 struct CameraPlace {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit: the way its camera looks
-  std::int64_t lens = 0;  // photographs with the same share a focal length
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector: optical axis
+  std::int64_t lens = 0;  // photographs with the same index share a focal length
 };
 
-// How far points are, in the photographs, from where these cameras would see them: what structure
-// from motion leaves over is a fraction of a pixel or one, and more where poses are wrong.
-// Undecided where no track says where a point is seen.
+// Judges by the median reprojection error of the sparse points: up to about a pixel after
+// structure from motion, more where poses are wrong. Undecided where no point has a track.
 Verdict JudgePoseRefinement(const PosedImages& posed);
 
 extern const EffectDescriptor kPoseRefinement;

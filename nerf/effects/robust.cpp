@@ -11,8 +11,9 @@
 namespace nerf {
 namespace {
 
-constexpr double kPassingShare = 0.007;  // of sightings that show something else
-constexpr double kSomethingElse = 0.35;  // log light, and four standard deviations of the residuals
+constexpr double kOutlierShare = 0.007;  // threshold: share of sightings that are outliers
+// An outlier's residual of log light is more than this and more than four standard deviations.
+constexpr double kOutlierResidual = 0.35;
 
 }  // namespace
 
@@ -26,19 +27,19 @@ Verdict JudgeRobust(const TrackColors& colors, const PhotographFit& fit) {
     residuals.push_back(std::fabs(static_cast<double>(residual.mean())));
   }
   const double noise = kDeviationOfMedian * Quantile(residuals, 0.5);
-  const double limit = std::max(kSomethingElse, 4 * noise);
-  std::size_t other = 0;
+  const double limit = std::max(kOutlierResidual, 4 * noise);
+  std::size_t outliers = 0;
   for (const Sighting& s : colors.unseen) {
     const Eigen::Vector3f residual =
         s.log_light - fit.of_point[s.point] - fit.of_photograph[s.photograph];
-    if (static_cast<double>(residual.cwiseAbs().maxCoeff()) > limit) ++other;
+    if (static_cast<double>(residual.cwiseAbs().maxCoeff()) > limit) ++outliers;
   }
-  const double share = static_cast<double>(other) /
-                       static_cast<double>(std::max<std::size_t>(1, colors.seen.size() + other));
-  return Measured(kRobust.name, share, kPassingShare,
-                  fmt::format("in {:.1f} % of the places where a point should be seen stands "
-                              "something else (threshold {:.1f} %)",
-                              100 * share, 100 * kPassingShare));
+  const double share = static_cast<double>(outliers) /
+                       static_cast<double>(std::max<std::size_t>(1, colors.seen.size() + outliers));
+  return Measured(kRobust.name, share, kOutlierShare,
+                  fmt::format("in {:.1f} % of the places where a point should be visible, "
+                              "something else is (threshold {:.1f} %)",
+                              100 * share, 100 * kOutlierShare));
 }
 
 const EffectDescriptor kRobust = {

@@ -5,14 +5,15 @@
 
 namespace nerf {
 
-// What stands in a photograph or two and in no other: passers-by, shadows that move. A ray's loss
-// l counts as l / (1 + l / scale), so that a large one, which nothing can make small, has little
-// weight. Source: Geman and McClure 1985.
+// A robust loss against transient objects, which only one or two photographs show: passers-by,
+// moving shadows. A ray's loss l becomes l / (1 + l / scale), so that outliers have little weight.
+// Source: Geman and McClure 1985.
 struct RobustOptions {
   double scale = 0.05;
 
-  // At the beginning every ray is wrong, and the most wrong ones have the most information: the
-  // scale falls from a hundred times as much, along a power, until half of the training is over.
+  // The options at a stage of training. At the beginning all errors are large and informative, so
+  // the scale starts at a hundred times its value and falls exponentially to it over the first half
+  // of training.
   //   progress  in [0, 1]
   RobustOptions At(double progress) const;
 
@@ -23,8 +24,8 @@ struct RobustOptions {
   }
 };
 
-// A ray's robust loss, and its derivative by the loss: the weight of the ray's gradients. Of
-// numbers or of tensors; >= 0.
+// The robust loss of a ray, and its derivative with respect to the ray's loss, which is the weight
+// of the ray's gradients. For scalars or tensors >= 0. Differentiable.
 template <class T>
 T RobustLoss(const T& loss, const RobustOptions& options) {
   return loss / (1 + loss / options.scale);
@@ -35,7 +36,7 @@ T RobustWeight(const T& loss, const RobustOptions& options) {
   return 1 / (excess * excess);
 }
 
-// The share of places where a point should be seen and something else is.
+// Judges by the share of places where a point should be visible but something else is.
 Verdict JudgeRobust(const TrackColors& colors, const PhotographFit& fit);
 
 extern const EffectDescriptor kRobust;

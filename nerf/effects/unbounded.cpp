@@ -5,10 +5,13 @@
 namespace nerf {
 
 Verdict JudgeUnbounded(const std::optional<Ball>& hull) {
-  if (!hull) return Fact(kUnbounded.name, true, 0, "what alpha leaves may reach beyond 2 radii");
-  return Fact(kUnbounded.name, hull->radius > kNearRadius, hull->radius,
-              fmt::format("what alpha leaves is in a ball of {:.2f} radii (threshold {:.1f})",
-                          hull->radius, kNearRadius));
+  if (!hull) {
+    return Fact(kUnbounded.name, true, 0, "the visual hull by alpha may extend beyond 2 radii");
+  }
+  return Fact(
+      kUnbounded.name, hull->radius > kNearRadius, hull->radius,
+      fmt::format("the visual hull by alpha is in a ball of {:.2f} radii (threshold {:.1f})",
+                  hull->radius, kNearRadius));
 }
 
 Verdict JudgeUnbounded(const PointShares& shares, bool may_learn_background) {
@@ -16,7 +19,7 @@ Verdict JudgeUnbounded(const PointShares& shares, bool may_learn_background) {
   return Fact(kUnbounded.name, !bounded, shares.between,
               fmt::format("{:.1f} % of the points are from {:.1f} to {:.0f} radii away{}",
                           100 * shares.between, kNearRadius, kFarRadius,
-                          bounded ? ": nothing before the background" : ""));
+                          bounded ? ": nothing in front of the background" : ""));
 }
 
 const EffectDescriptor kUnbounded = {

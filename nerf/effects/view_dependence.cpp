@@ -12,9 +12,8 @@
 namespace nerf {
 namespace {
 
-constexpr std::size_t kFewestViews = 5;  // of a point
-constexpr double kViewDependentShare =
-    0.12;  // of the points, from which on the effect is called for
+constexpr std::size_t kFewestViews = 5;       // of a point
+constexpr double kViewDependentShare = 0.12;  // threshold: share of points whose colour changes
 
 }  // namespace
 
@@ -36,8 +35,8 @@ Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit)
     if (change > kTexturelessVariation + Quantile(spread.contrast, 0.5)) ++changing;
   }
   if (judged < kFewestPoints) {
-    return Undecided(kViewDependence.name, fmt::format("only {} points are seen {} times and more",
-                                                       judged, kFewestViews));
+    return Undecided(kViewDependence.name,
+                     fmt::format("only {} points have {} or more sightings", judged, kFewestViews));
   }
   const double share = static_cast<double>(changing) / static_cast<double>(judged);
   return Measured(kViewDependence.name, share, kViewDependentShare,

@@ -4,24 +4,24 @@
 
 namespace nerf {
 
-// Whether colour depends on the direction from which it is seen, or, as a matt surface's, does not.
+// Whether colour depends on the viewing direction or not, as on a matt surface.
 enum class ColorModel { kDiffuse, kViewDependent };
 
-// Light that a surface sends into one direction and not into another: gloss, mirrors. With it the
-// colour network sees the direction, as spherical harmonics (nerf/kernels/direction_encoding.h);
-// without it that network has no weights for them.
+// Radiance that depends on the viewing direction: gloss, mirrors. With it the direction is an input
+// of the colour network, as spherical harmonics (nerf/kernels/direction_encoding.h); without it
+// that network has no weights for them.
 struct ViewDependenceOptions {
   template <class Self, class Visitor>
   static void Options(Self&, Visitor&&) {}
 };
 
-// What the field's colours depend on where the effect is on or off.
+// The colour model of the field where the effect is on or off.
 constexpr ColorModel ColorModelOf(bool view_dependence) {
   return view_dependence ? ColorModel::kViewDependent : ColorModel::kDiffuse;
 }
 
-// The share of points whose colour changes from view to view by more than an error of a pixel, or
-// another slant, could change it in their texture. Undecided where few points are seen often.
+// Judges by the share of points whose colour changes between views by more than their local texture
+// explains (an error of a pixel, another slant). Undecided where too few points have long tracks.
 Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit);
 
 extern const EffectDescriptor kViewDependence;

@@ -4,9 +4,9 @@
 
 namespace nerf {
 
-// exp(x), the activation of density, with the argument held to [-kExpLimit, kExpLimit]: neither the
-// value nor the gradient can overflow, and the gradient never dies: outside the limits it is that
-// of the nearest limit. Source: the "truncated exponential" of Mueller et al. 2022's code.
+// exp(x) with x clamped to [-kExpLimit, kExpLimit], the activation of density. The backward pass
+// uses the clamped value, so that the gradient neither overflows nor vanishes outside the limits.
+// Source: the truncated exponential in the code of Mueller et al. 2022. Any shape; differentiable.
 inline constexpr double kExpLimit = 15.0;
 torch::Tensor TruncatedExp(const torch::Tensor& x);
 

@@ -9,8 +9,8 @@
 namespace nerf {
 namespace {
 
-// As many floats an entry as tables of the optimiser have, of which colours take three. A texel is
-// seen now and then: as a table it is moved only when it is, not by what is left of old steps.
+// A texel is padded to four floats, so that the optimiser updates the map as a sparse table: texels
+// without a gradient in a step are not moved by the momentum of earlier steps.
 constexpr std::int64_t kColumns = 4;
 
 }  // namespace
@@ -35,7 +35,7 @@ torch::Tensor Background::forward(const torch::Tensor& directions) {
     index.insert(index.end(), texels.index.begin(), texels.index.end());
     weight.insert(weight.end(), texels.weight.begin(), texels.weight.end());
   }
-  // Copied, for the way back asks for them when these vectors are gone.
+  // Cloned, because autograd reads them in the backward pass, when these vectors are gone.
   const torch::Tensor corners =
       Raw().index_select(0, TensorOf(index, {4 * rays}, torch::kLong).clone()).view({rays, 4, 3});
   const torch::Tensor raw =
@@ -50,10 +50,10 @@ BackgroundMap Background::Map() const {
   return {rows_, encoding_, {values.begin(), values.end()}};
 }
 
-void Background::Start(const TargetBatch& batch) {
+void Background::Initialize(const TargetBatch& batch) {
   const torch::NoGradGuard no_grad;
   BackgroundMap map = Map();
-  StartFromPhotographs(batch.photograph, batch.rays.direction, batch.rgb, map);
+  InitializeBackground(batch.photograph, batch.rays.direction, batch.rgb, map);
   Raw().copy_(TensorOf(map.raw, {table_.size(0), 3}, torch::kFloat));
 }
 

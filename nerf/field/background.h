@@ -11,34 +11,35 @@
 
 namespace nerf {
 
-// Surroundings without end, such as a sky: a learned colour for each direction, which a ray sees
-// where it meets nothing. Without it the field must put an opaque wall somewhere far off for each
-// ray. A map of the world by direction; see BackgroundMap for its form.
+// Surroundings at infinity, such as a sky: a learned colour per direction, composited behind the
+// field. Without it the field has to represent them by distant opaque density. The colours are an
+// equirectangular map, see BackgroundMap.
 class Background : public torch::nn::Module {
  public:
-  // Grey before Start: sRGB-encoded 0.5, linear 1.
+  // Grey before Initialize: sRGB-encoded 0.5, linear 1.
   Background(const BackgroundOptions& options, ColorEncoding encoding);
 
-  // directions [R,3] unit vectors -> [R,3]. Differentiable in the map.
+  // directions [R,3] unit vectors -> [R,3]. Differentiable in the map, not in the directions.
+  // Throws c10::Error on a shape mismatch.
   torch::Tensor forward(const torch::Tensor& directions);
 
-  // As it is now.
+  // A copy of the current map.
   BackgroundMap Map() const;
 
-  // What training starts from: StartFromPhotographs. A map that is right from the start leaves
-  // nothing for fog before it to explain.
-  void Start(const TargetBatch& batch);
+  // Initializes the map from training rays (InitializeBackground), so that training does not first
+  // explain the background by floaters.
+  void Initialize(const TargetBatch& batch);
 
   // Adds to the gradient of the map.
-  //   dL_draw  [rows, 2 rows, 3]
+  //   dL_draw  [rows, 2 * rows, 3]
   void AddGradient(std::span<const float> dL_draw);
 
  private:
-  torch::Tensor Raw() const;  // [rows * 2 rows, 3], of table_
+  torch::Tensor Raw() const;  // [rows * 2 * rows, 3], a view of table_
 
   int rows_;
   ColorEncoding encoding_;
-  torch::Tensor table_;  // [rows * 2 rows, 4], of which three count
+  torch::Tensor table_;  // [rows * 2 * rows, 4]; the last column is padding
 };
 
 }  // namespace nerf

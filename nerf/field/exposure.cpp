@@ -8,7 +8,7 @@
 namespace nerf {
 namespace {
 
-// The exponent of the power law that the sRGB curve is close to.
+// The exponent of the power law that approximates the sRGB curve.
 constexpr double kGamma = 2.2;
 
 }  // namespace
@@ -26,7 +26,7 @@ torch::Tensor Exposure::forward(const torch::Tensor& rgb, const torch::Tensor& p
                                 const torch::Tensor& target) {
   TORCH_CHECK(rgb.sizes() == target.sizes() && rgb.size(0) == photograph.size(0), "Exposure: rgb ",
               rgb.sizes(), ", target ", target.sizes(), " and photograph ", photograph.sizes(),
-              " do not fit");
+              " do not match");
   const torch::Tensor shown = rgb * Gains().to(rgb.scalar_type()).index_select(0, photograph);
   if (!Saturates()) return shown;
   return torch::where(torch::logical_and(target >= 1, shown > 1), target, shown);
@@ -37,7 +37,7 @@ torch::Tensor Exposure::DivideByGains(const torch::Tensor& background,
   return background / Gains().to(background.scalar_type()).index_select(0, photograph);
 }
 
-void Exposure::Start(std::span<const double> stops) {
+void Exposure::Initialize(std::span<const double> stops) {
   TORCH_CHECK(static_cast<std::int64_t>(stops.size()) == log_gain_.size(0),
               "Exposure: ", stops.size(), " exposures for ", log_gain_.size(0), " photographs");
   const torch::NoGradGuard no_grad;

@@ -8,7 +8,7 @@
 namespace nerf {
 namespace {
 
-constexpr std::int64_t kSamplesWorthAThread = 512;
+constexpr std::int64_t kMinSamplesPerThread = 512;
 
 struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
   static torch::Tensor forward(torch::autograd::AutogradContext* ctx, const torch::Tensor& table,
@@ -17,7 +17,7 @@ struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
     const std::int64_t count = positions.size(0);
     torch::Tensor encoded = torch::empty({count, layout->OutputSize()}, table.options());
     AT_DISPATCH_FLOATING_TYPES(table.scalar_type(), "hash_encode_forward", [&] {
-      ParallelFor(count, kSamplesWorthAThread, [&](std::int64_t first, std::int64_t last) {
+      ParallelFor(count, kMinSamplesPerThread, [&](std::int64_t first, std::int64_t last) {
         kernels::HashEncodeForward<scalar_t>(*layout, Span<const scalar_t>(table),
                                              Span<const scalar_t>(positions),
                                              Span<scalar_t>(encoded), first, last);
@@ -50,7 +50,7 @@ struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
     torch::Tensor dL_dposition = torch::zeros_like(positions);
     const std::vector<float> ones(layout->levels.size(), 1.0f);
     AT_DISPATCH_FLOATING_TYPES(dL_dencoded.scalar_type(), "hash_encode_position", [&] {
-      ParallelFor(positions.size(0), kSamplesWorthAThread,
+      ParallelFor(positions.size(0), kMinSamplesPerThread,
                   [&](std::int64_t first, std::int64_t last) {
                     kernels::HashEncodePositionBackward<scalar_t>(
                         *layout, Span<const scalar_t>(table), Span<const scalar_t>(positions),
@@ -67,9 +67,9 @@ struct HashEncodeFunction : torch::autograd::Function<HashEncodeFunction> {
 HashEncoding::HashEncoding(const kernels::HashGridOptions& options, std::uint64_t seed)
     : layout_(kernels::MakeHashGridLayout(options)) {
   auto generator = at::make_generator<at::CPUGeneratorImpl>(seed);
-  const torch::Tensor start =
+  const torch::Tensor initial =
       torch::empty({layout_.entries, layout_.features}).uniform_(-1e-4, 1e-4, generator);
-  table_ = register_parameter("table", start);
+  table_ = register_parameter("table", initial);
 }
 
 torch::Tensor HashEncoding::forward(const torch::Tensor& positions) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// What of LibTorch is used here. <torch/torch.h> brings all layers, optimisers and readers of data,
-// whose templates cost 7 seconds in each file that includes it, precompiled or not.
+// The parts of LibTorch in use. <torch/torch.h> includes all layers, optimisers and data loaders,
+// whose templates cost 7 seconds per including file, precompiled or not.
 #include <torch/autograd.h>
 #include <torch/nn/module.h>
 #include <torch/types.h>

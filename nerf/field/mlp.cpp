@@ -13,11 +13,11 @@ Mlp::Mlp(const std::vector<std::int64_t>& widths, std::uint64_t seed) {
   auto generator = at::make_generator<at::CPUGeneratorImpl>(seed);
   for (std::size_t i = 0; i + 1 < widths.size(); ++i) {
     const double bound = std::sqrt(6.0 / static_cast<double>(widths[i]));
-    const torch::Tensor start =
+    const torch::Tensor initial =
         torch::empty({widths[i + 1], widths[i]}).uniform_(-bound, bound, generator);
     const auto layer =
         register_module("layer" + std::to_string(i), std::make_shared<torch::nn::Module>());
-    weights_.push_back(layer->register_parameter("weight", start));
+    weights_.push_back(layer->register_parameter("weight", initial));
   }
 }
 

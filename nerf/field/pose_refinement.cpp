@@ -10,8 +10,8 @@
 namespace nerf {
 namespace {
 
-// How all cameras move under the seven similarities of the whole, to first order: an orthonormal
-// basis of it. Fewer columns where fewer tell apart, as with cameras in one point.
+// An orthonormal basis of the movements of all cameras under similarities of the whole scene, to
+// first order. Seven columns, or fewer where movements coincide, as for cameras in one point.
 Eigen::MatrixXd SimilarityBasis(const std::vector<CameraPlace>& cameras) {
   const auto count = static_cast<Eigen::Index>(cameras.size());
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -21,7 +21,7 @@ Eigen::MatrixXd SimilarityBasis(const std::vector<CameraPlace>& cameras) {
     const Eigen::Vector3d arm = cameras[i].centre - mean;
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis);
-      moves.block<3, 1>(6 * i, axis) = unit;  // turning about the mean turns and shifts
+      moves.block<3, 1>(6 * i, axis) = unit;  // a rotation about the mean rotates and translates
       moves.block<3, 1>(6 * i + 3, axis) = unit.cross(arm);
       moves.block<3, 1>(6 * i + 3, 3 + axis) = unit;
     }
@@ -76,9 +76,10 @@ torch::Tensor PoseRefinement::Twists() const {
 
 torch::Tensor PoseRefinement::LogFocals() const { return rate_ * log_focal_; }
 
-// A focal length f times as long: pixels stand at (x, y, f) where they stood at (x, y, 1).
-torch::Tensor PoseRefinement::Zoomed(const torch::Tensor& direction, const torch::Tensor& axis,
-                                     const torch::Tensor& log_f) {
+// With f times the focal length, the pixel at (x, y, 1) is at (x, y, f).
+torch::Tensor PoseRefinement::ScaleFocalLength(const torch::Tensor& direction,
+                                               const torch::Tensor& axis,
+                                               const torch::Tensor& log_f) {
   const torch::Tensor along = (axis * direction).sum(1, true);
   const torch::Tensor length = (1 + torch::expm1(2 * log_f) * along.square()).sqrt();
   return (direction + torch::expm1(log_f) * along * axis) / length;
@@ -88,32 +89,33 @@ RefinedRays PoseRefinement::forward(const torch::Tensor& origin, const torch::Te
                                     const torch::Tensor& photograph) {
   TORCH_CHECK(origin.sizes() == direction.sizes() && origin.size(0) == photograph.size(0),
               "PoseRefinement: origin ", origin.sizes(), ", direction ", direction.sizes(),
-              " and photograph ", photograph.sizes(), " do not fit");
+              " and photograph ", photograph.sizes(), " do not match");
   const torch::Tensor twist = Twists().index_select(0, photograph);
-  const torch::Tensor turn = twist.slice(1, 0, 3), shift = twist.slice(1, 3, 6);
+  const torch::Tensor rotation = twist.slice(1, 0, 3), translation = twist.slice(1, 3, 6);
 
   const torch::Tensor log_f =
       LogFocals().index_select(0, lens_.index_select(0, photograph)).unsqueeze(1);
-  const torch::Tensor zoomed = Zoomed(direction, axis_.index_select(0, photograph), log_f);
+  const torch::Tensor scaled =
+      ScaleFocalLength(direction, axis_.index_select(0, photograph), log_f);
 
-  // Rodrigues' formula; its series in the square of the angle is smooth at 0.
-  const torch::Tensor a = turn.square().sum(1, true);
+  // Rodrigues' formula as a series in the square of the angle, which is smooth at 0.
+  const torch::Tensor a = rotation.square().sum(1, true);
   const torch::Tensor sine = 1 - a / 6 * (1 - a / 20 * (1 - a / 42 * (1 - a / 72)));
   const torch::Tensor cosine = 0.5 - a / 24 * (1 - a / 30 * (1 - a / 56 * (1 - a / 90)));
-  const torch::Tensor once = Cross(turn, zoomed);
-  const torch::Tensor turned = zoomed + sine * once + cosine * Cross(turn, once);
-  return {origin + shift, turned};
+  const torch::Tensor once = Cross(rotation, scaled);
+  const torch::Tensor rotated = scaled + sine * once + cosine * Cross(rotation, once);
+  return {origin + translation, rotated};
 }
 
 RayBatch WithRefinedRays(const RayBatch& rays, const RefinedRays& refined) {
   RayBatch out = rays;
-  const auto take = [](const torch::Tensor& from, std::vector<float>& to) {
+  const auto copy = [](const torch::Tensor& from, std::vector<float>& to) {
     const torch::Tensor flat = from.detach().to(torch::kFloat).contiguous();
     const auto values = Span<const float>(flat);
     to.assign(values.begin(), values.end());
   };
-  take(refined.origin, out.origin);
-  take(refined.direction, out.direction);
+  copy(refined.origin, out.origin);
+  copy(refined.direction, out.direction);
   return out;
 }
 
@@ -122,10 +124,10 @@ Eigen::Isometry3d PoseRefinement::Refined(std::int64_t photograph,
   const torch::NoGradGuard no_grad;
   const torch::Tensor twist = Twists()[photograph].to(torch::kDouble).contiguous();
   const Eigen::Map<const Eigen::Matrix<double, 6, 1>> values(twist.data_ptr<double>());
-  const Eigen::Vector3d turn = values.head<3>();
+  const Eigen::Vector3d rotation = values.head<3>();
   Eigen::Isometry3d refined = normalized_from_camera;
-  if (turn.norm() > 0) {
-    refined.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * refined.linear();
+  if (rotation.norm() > 0) {
+    refined.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()) * refined.linear();
   }
   refined.translation() += values.tail<3>();
   return refined;

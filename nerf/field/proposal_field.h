@@ -9,15 +9,16 @@
 
 namespace nerf {
 
-// A small density field that says where along a ray the large one should look. It learns no
-// colours, only to stand wherever the weights of the large field do.
+// The proposal network: a small density field by whose weights rays are resampled for the radiance
+// field. It is trained to bound the weights of the radiance field. Source: Barron et al. 2022,
+// "Mip-NeRF 360".
+//
+// Its weights are raised to an exponent before resampling (Annealing::proposal): 0 spaces samples
+// evenly, 1 follows the weights. Training begins with 0, because an untrained network has no
+// information.
 class ProposalField : public torch::nn::Module {
  public:
   ProposalField(const ProposalOptions& options, std::uint64_t seed);
-
-  // Its weights are raised to an exponent before rays are resampled by them (Annealing::proposal):
-  // 0 spreads samples evenly, 1 follows the weights. A new network knows nothing, so training
-  // begins with 0.
 
   // positions [S,3] in the unit cube -> [S], 1 / normalized scene unit. Differentiable in the
   // parameters.

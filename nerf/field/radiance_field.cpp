@@ -10,7 +10,7 @@
 namespace nerf {
 namespace {
 
-// Levels that show at no detail at all: cells of an eighth and less of the unit ball.
+// Levels that are active at detail 0.
 constexpr double kCoarsestLevels = 2.0;
 
 std::vector<std::int64_t> ColorWidths(const FieldOptions& options, ColorModel color_model) {
@@ -51,7 +51,7 @@ std::vector<float> RadianceField::DetailWeights(double detail) const {
   return weights;
 }
 
-// The encoded positions with the levels beyond the detail faded to 0.
+// The encoded positions, with the levels beyond the detail faded out.
 torch::Tensor RadianceField::Encode(const torch::Tensor& positions,
                                     const torch::Tensor& level_weights, double detail) {
   torch::Tensor encoded = hash_encoding_->forward(positions);
@@ -81,7 +81,7 @@ FieldOutput RadianceField::forward(const torch::Tensor& positions, const torch::
   const torch::Tensor geometry = out.slice(1, 1);
   torch::Tensor color_input = geometry;
   if (color_model_ == ColorModel::kViewDependent) {
-    // Encoded once a ray, then dealt to the ray's samples.
+    // Encoded once per ray, then gathered for its samples.
     const torch::Tensor view = (detail * EncodeDirections(directions)).index_select(0, ray);
     color_input = torch::cat({geometry, view}, 1);
   }

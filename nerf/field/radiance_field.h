@@ -12,46 +12,48 @@
 
 namespace nerf {
 
-// What the field says of samples: density and the colour sent towards the camera.
+// Density and radiance of samples.
 struct FieldOutput {
   torch::Tensor sigma;     // [S]   1 / normalized scene unit, > 0
   torch::Tensor radiance;  // [S,3] in [0,1] for sRGB-encoded fields, >= 0 for linear ones
 };
 
-// The parameters: a hash encoding of position, a density network, a colour network that also sees
-// the direction, unless colour is diffuse. Source: Mueller et al. 2022, section 5.4.
+// The radiance field: a hash encoding of position, a density network, and a colour network that
+// also takes the direction unless colour is diffuse. Source: Mueller et al. 2022, section 5.4.
+//
+// `detail` is the coarse-to-fine schedule: how much of the field is active, from 0 (the coarsest
+// levels only, no view dependence) to 1 (everything). Geometry is found while only coarse levels
+// are active; fine levels and directions could overfit to each photograph. Source: the frequency
+// regularisation of Yang et al. 2023, "FreeNeRF", applied to hash levels.
 class RadianceField : public torch::nn::Module {
  public:
-  // encoding of colour: sRGB-encoded fields end in a sigmoid, linear ones in a truncated
-  // exponential.
+  //   encoding  of colour: the activation is a sigmoid for sRGB-encoded fields, a truncated
+  //             exponential for linear ones
   RadianceField(const kernels::HashGridOptions& grid, const FieldOptions& options,
                 ColorEncoding encoding, std::uint64_t seed,
                 ColorModel color_model = ColorModel::kViewDependent);
 
-  // `detail` in all of these: how much of the field is active, from 0 (the coarsest levels alone,
-  // no view dependence) to 1 (everything). Shape is found while only coarse positions can explain
-  // the photographs; fine levels and directions could explain each of them by itself. Source: the
-  // frequency regularisation of Yang et al. 2023 (FreeNeRF), on hash levels.
-
   // positions [S,3] in the unit cube -> [S], 1 / normalized scene unit
   //   level_weights  [S, levels] anti-aliasing weights (nerf/effects/anti_aliasing.h); undefined: 1
+  // Differentiable in the parameters and the positions.
   torch::Tensor Density(const torch::Tensor& positions, const torch::Tensor& level_weights = {},
                         double detail = 1);
-  // The same in 1 / unit of contracted space, which is what the network says: outside the unit ball
-  // Density is that times 1/r^2. So a ray to infinity crosses a finite optical depth from the start
-  // on, and light from its end, the background, still teaches what stands before it.
+  // The same in 1 / unit of contracted space, before RadialShrinkage: outside the unit ball Density
+  // is this divided by r^2. So the optical depth of a ray to infinity is finite from the start, and
+  // gradients from the background reach the samples in front of it.
   torch::Tensor ContractedDensity(const torch::Tensor& positions,
                                   const torch::Tensor& level_weights = {}, double detail = 1);
 
+  // Density and radiance of samples.
   //   positions   [S,3] in the unit cube
-  //   directions  [R,3] unit vectors, one a ray
+  //   directions  [R,3] unit vectors, one per ray
   //   ray         [S] int64, the ray of each sample
   // Differentiable in the parameters and the positions.
   FieldOutput forward(const torch::Tensor& positions, const torch::Tensor& directions,
                       const torch::Tensor& ray, const torch::Tensor& level_weights = {},
                       double detail = 1);
 
-  // The weight of each level of the encoding at a detail, in [0,1].
+  // [levels] The weight of each level of the encoding at a detail, in [0,1].
   std::vector<float> DetailWeights(double detail) const;
 
   torch::Dtype Dtype() const;

@@ -63,7 +63,7 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   if (config.effects.exposure) {
     model.exposure = std::make_shared<Exposure>(static_cast<std::int64_t>(scene.photographs.size()),
                                                 scene.encoding);
-    if (!scene.exposure_stops.empty()) model.exposure->Start(scene.exposure_stops);
+    if (!scene.exposure_stops.empty()) model.exposure->Initialize(scene.exposure_stops);
   }
   if (config.effects.pose_refinement) {
     model.pose_refinement =

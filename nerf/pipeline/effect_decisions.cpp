@@ -16,7 +16,8 @@ bool IsChosen(const Verdict& verdict) { return verdict.effect != kAlpha && verdi
 EffectDecisions::EffectDecisions(const Inspection& inspection, std::set<std::string> requested)
     : verdicts_(inspection.verdicts), requested_(std::move(requested)) {
   for (const Verdict& verdict : verdicts_) {
-    if (!IsChosen(verdict) || requested_.contains(verdict.effect) || !verdict.IsConclusive()) continue;
+    if (!IsChosen(verdict) || requested_.contains(verdict.effect) || !verdict.IsConclusive())
+      continue;
     assignments_.push_back(verdict.assignment);
   }
 }
@@ -39,7 +40,8 @@ void EffectDecisions::DisableBackgroundForAlpha(const PipelineListener& listener
   };
   const auto background = find(kBackground), unbounded = find(kUnbounded);
   const auto end = verdicts_.end();
-  if (background == end || !background->decided || (!background->on && background->IsConclusive())) {
+  if (background == end || !background->decided ||
+      (!background->on && background->IsConclusive())) {
     return;
   }
   if (background->on && unbounded != end && !unbounded->on) {

@@ -18,7 +18,8 @@ namespace {
 // channel.
 void FitExposure(const Image& truth, const Eigen::Vector3f& background, RenderedView& view) {
   const Image shown = view.rgb.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
-  const std::vector<float> through = SeenThrough(view.opacity.pixels, {background.data(), 3});
+  const std::vector<float> through =
+      BackgroundContribution(view.opacity.pixels, {background.data(), 3});
   std::vector<float>& rgb = view.rgb.pixels;
   ApplyGains(FitGains(rgb, shown.pixels, through, view.rgb.encoding), through, rgb);
 }

@@ -161,7 +161,7 @@ void TrainingSession::ReportRefinedPoses() const {
   const SceneNormalization& normalized_from_world = model.scene.normalized_from_world;
   PoseRefinementSummary summary = Summarize(*model.pose_refinement);
   summary.median_shift = normalized_from_world.LengthWorldFromNormalized(summary.median_shift);
-  summary.most_shift = normalized_from_world.LengthWorldFromNormalized(summary.most_shift);
+  summary.max_shift = normalized_from_world.LengthWorldFromNormalized(summary.max_shift);
   listener_(PosesRefined{summary});
   sfm::WriteTransformsJson(RefinedPoses(model, posed_), RefinedPosesPath(request_.run));
 }

@@ -5,7 +5,7 @@
 
 namespace nerf {
 
-// The rays with what the map shows in their directions as their background.
+// Copies the rays and sets their backgrounds to the map's colours in their directions.
 RayBatch WithBackground(const RayBatch& rays, const BackgroundMap& map);
 
 }  // namespace nerf

@@ -20,14 +20,14 @@ using kernels::TileMlp;
 
 namespace {
 
-// The gradient of a parameter to add to; new ones start at zero.
+// The gradient of a parameter, to accumulate into; created as zeros if undefined.
 float* GradientOf(const torch::Tensor& parameter) {
   torch::Tensor& gradient = parameter.mutable_grad();
   if (!gradient.defined()) gradient = torch::zeros_like(parameter).detach();
   return gradient.data_ptr<float>();
 }
 
-// As nerf::RadialShrinkage, of one position.
+// RadialShrinkage of one position.
 float ShrinkageOf(const float* position) {
   float square = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -96,7 +96,7 @@ void TileDensity::ContractedDensity(std::span<const float> positions, DensityTil
   timer.Lap(tile.seconds.networks);
 }
 
-// Forward the encodings, on the way back their gradients.
+// Scales the encodings in the forward pass, and their gradients in the backward pass.
 void TileDensity::ApplyAntiAliasing(std::int64_t samples, DensityTile& tile) const {
   const std::int64_t levels = static_cast<std::int64_t>(hash_.Layout().levels.size());
   const int features = hash_.Layout().features;
@@ -177,7 +177,7 @@ void TileDensity::AddToParameters(std::span<const DensityGradients* const> gradi
   float* const dL_dtable = GradientOf(hash_.Table());
   const auto levels = static_cast<std::int64_t>(hash_.Layout().levels.size());
   ParallelForEach(levels, [&](std::int64_t item) {
-    const auto level = static_cast<int>(levels - 1 - item);  // the finest take longest: first
+    const auto level = static_cast<int>(levels - 1 - item);  // the finest first: they take longest
     for (const DensityGradients* part : gradients) {
       kernels::HashScatterLevel(hash_.Layout(), level, level_weights_[level], part->position.data(),
                                 part->dL_dencoded.data(), Row(),

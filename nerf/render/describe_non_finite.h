@@ -9,8 +9,8 @@
 
 namespace nerf {
 
-// Names the first ray whose loss is not finite, and the stage that spoilt it: density, colour,
-// compositing or the photograph's own colours.
+// Names the first ray with a non-finite value, and the stage that produced it: density, colour,
+// compositing or the colours of the photograph.
 //   rgb, target  [R,3]
 std::string DescribeNonFinite(const PackedSamples& samples, const FieldOutput& field,
                               const torch::Tensor& rgb, const torch::Tensor& target);

@@ -12,7 +12,7 @@ std::unique_ptr<Engine> MakeEngine(const ModelParts& parts) {
     case EngineKind::kLibTorch:
       return std::make_unique<LibTorchEngine>(parts);
   }
-  TORCH_CHECK(false, "MakeEngine: no such engine");
+  TORCH_CHECK(false, "MakeEngine: unknown engine");
 }
 
 }  // namespace nerf

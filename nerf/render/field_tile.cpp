@@ -32,7 +32,7 @@ void TileField::Radiance(std::int64_t samples, std::span<const std::int64_t> ray
   tile.color.Resize(color_, samples);
   const int in_row = PaddedWidth(color_.Width(0));
   std::array<float, kDirectionFeatures> view{};
-  // None where colour is diffuse.
+  // 0 where colour is diffuse.
   const int view_features = color_.Width(0) - geometry_features_;
   for (std::int64_t i = 0; i < samples; ++i) {
     if (view_features > 0 && (i == 0 || ray[i] != ray[i - 1])) {

@@ -10,19 +10,20 @@
 
 namespace nerf {
 
-// What the field says of the samples of a tile, and what it needs for the way back.
+// Density and radiance of the samples of a tile, and the intermediate results for the backward
+// pass.
 struct FieldTile {
-  DensityTile density;          // whose seconds are those of the colours too
+  DensityTile density;          // its seconds include the colour network
   std::vector<float> radiance;  // [S,3]
   TileRows color;
 };
 
 struct FieldGradients {
   DensityGradients density;
-  std::vector<float> color;  // of the colour network's weights, in TileMlp's layout
+  std::vector<float> color;  // of the weights of the colour network, in TileMlp's layout
 };
 
-// RadianceField for tiles of samples (see TileDensity): the same formula on the same parameters.
+// RadianceField for tiles of samples: the same formula on the same parameters, see TileDensity.
 class TileField {
  public:
   // The field must outlive it.
@@ -34,19 +35,20 @@ class TileField {
 
   const TileDensity& Density() const { return density_; }
 
-  // Radiance of the first `samples` samples of the tile, after TileDensity::Density.
-  //   ray, directions  the ray of each sample, and the direction of each ray
+  // The radiance of the first `samples` samples of the tile, after TileDensity::Density.
+  //   ray         [S] the ray of each sample
+  //   directions  [R,3] unit vectors
   void Radiance(std::int64_t samples, std::span<const std::int64_t> ray,
                 std::span<const float> directions, FieldTile& tile) const;
 
-  // The way back of Density and Radiance for the first `samples` samples; uses the tile up.
+  // The backward pass of Density and Radiance for the first `samples` samples. Overwrites the tile.
   //   dL_dsigma [S], dL_dradiance [S,3]
   void Backward(std::int64_t samples, std::span<const float> positions,
                 std::span<const float> dL_dsigma, std::span<const float> dL_dradiance,
                 FieldTile& tile, FieldGradients& gradients) const;
 
   void Clear(FieldGradients& gradients) const;
-  // Adds what the threads gathered, in their order, to the gradients of the LibTorch parameters.
+  // Adds the gradients of all threads, in their order, to those of the LibTorch parameters.
   void AddToParameters(std::span<const FieldGradients* const> gradients);
 
  private:

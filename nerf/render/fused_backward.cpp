@@ -1,4 +1,5 @@
-// FusedEngine's backward pass, from the pixels of a tile to the sums of gradients of its thread.
+// FusedEngine's backward pass, from the pixels of a tile to the gradients accumulated by its
+// thread.
 #include <algorithm>
 
 #include "nerf/base/stopwatch.h"
@@ -9,13 +10,13 @@
 
 namespace nerf {
 
-// As nerf/effects/depth_supervision.h defines it. In the backward pass the samples' costs stand for
-// their distances, which no other loss asks about.
+// The loss of nerf/effects/depth_supervision.h. Its gradient is that of an expected depth in which
+// the samples' costs replace their distances; no other loss uses the gradient of depth.
 void FusedEngine::AddDepthLoss(const TargetBatch& batch, std::int64_t first, Worker& worker) const {
   const FusedTile& tile = worker.tile;
   const std::int64_t count = tile.Rays(), size = tile.samples.Size();
   const double weight = parts_.config.effects.depth_supervision->weight;
-  const auto slope = static_cast<float>(weight / static_cast<double>(batch.rays.Size()));
+  const auto dL_dcost = static_cast<float>(weight / static_cast<double>(batch.rays.Size()));
   worker.costs = DepthCosts(tile.samples.t, tile.ray, batch.distance,
                             *parts_.config.effects.depth_supervision);
   worker.weights.resize(size);
@@ -23,17 +24,17 @@ void FusedEngine::AddDepthLoss(const TargetBatch& batch, std::int64_t first, Wor
                                  worker.weights, 0, count);
   for (std::int64_t r = 0; r < count; ++r) {
     if (batch.distance[first + r] == 0) continue;
-    auto paid = static_cast<double>(1 - tile.opacity[r]);
+    auto cost = static_cast<double>(1 - tile.opacity[r]);
     for (std::int64_t i = tile.ray_begin[r]; i < tile.ray_begin[r + 1]; ++i) {
-      paid += static_cast<double>(worker.weights[i] * worker.costs[i]);
+      cost += static_cast<double>(worker.weights[i] * worker.costs[i]);
     }
-    worker.pixels.loss += 3 * weight * paid;  // the sum is over rays and channels
-    worker.pixels.dL_ddepth[r] = slope;
-    worker.pixels.dL_dopacity[r] = -slope;
+    worker.pixels.loss += 3 * weight * cost;  // the sum is over rays and channels
+    worker.pixels.dL_ddepth[r] = dL_dcost;
+    worker.pixels.dL_dopacity[r] = -dL_dcost;
   }
 }
 
-// From the pixels of a tile back to the field.
+// Backward pass of a tile.
 void FusedEngine::Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
                            std::span<float> ray_error) const {
   FusedTile& tile = worker.tile;

@@ -17,7 +17,7 @@
 namespace nerf {
 namespace {
 
-// Positions without rays whose densities are evaluated at once.
+// Positions per tile when the occupancy grid is updated.
 constexpr std::int64_t kTilePositions = 512;
 
 }  // namespace
@@ -36,7 +36,7 @@ RenderOutput FusedEngine::Render(const RayBatch& rays) const {
   return FusedRenderer(parts_).Render(rays);
 }
 
-// Takes over the parameters, which the optimiser changes between batches, and the step's context.
+// Copies the parameters, which the optimiser changes between batches, and applies the context.
 void FusedEngine::Refresh(const StepContext& context) {
   forward_.Refresh(context.annealing);
   if (const auto& robust = parts_.config.effects.robust) {
@@ -54,8 +54,8 @@ void FusedEngine::Refresh(const StepContext& context) {
 StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch, const StepContext& context) {
   CheckRays(batch.rays);
   Refresh(context);
-  if (!parts_.background && !parts_.pose_refinement && !parts_.exposure) return LearnFrom(batch);
-  TargetBatch seen =
+  if (!parts_.background && !parts_.pose_refinement && !parts_.exposure) return RunBatch(batch);
+  TargetBatch effective =
       pixel_model_.unexposed ? WithUnexposedBackgrounds(batch, pixel_model_.gain) : batch;
   const std::int64_t count = batch.rays.Size();
   RefinedRays refined;
@@ -64,12 +64,12 @@ StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch, const Step
         parts_.pose_refinement->forward(TensorOf(batch.rays.origin, {count, 3}, torch::kFloat),
                                         TensorOf(batch.rays.direction, {count, 3}, torch::kFloat),
                                         TensorOf(batch.photograph, {count}, torch::kLong));
-    seen.rays = WithRefinedRays(batch.rays, refined);
+    effective.rays = WithRefinedRays(batch.rays, refined);
   }
-  if (parts_.background) seen.rays = WithBackground(seen.rays, background_);
-  const StepResult result = LearnFrom(seen);
+  if (parts_.background) effective.rays = WithBackground(effective.rays, background_);
+  const StepResult result = RunBatch(effective);
   if (parts_.pose_refinement) {
-    const RayGradient gradient = GradientOfRays(seen.rays);
+    const RayGradient gradient = GradientOfRays(effective.rays);
     torch::autograd::backward({refined.origin, refined.direction},
                               {TensorOf(gradient.origin, {count, 3}, torch::kFloat).clone(),
                                TensorOf(gradient.direction, {count, 3}, torch::kFloat).clone()});
@@ -77,11 +77,11 @@ StepResult FusedEngine::AccumulateGradients(const TargetBatch& batch, const Step
   return result;
 }
 
-// dL/dray of the batch that was learned from, by its samples.
+// dL/dray of the batch of the last RunBatch, from the gradients of its samples.
 RayGradient FusedEngine::GradientOfRays(const RayBatch& rays) const {
   RayGradient gradient = {std::vector<float>(rays.origin.size(), 0.0f),
                           std::vector<float>(rays.direction.size(), 0.0f)};
-  // Each worker's rays are its own.
+  // No ray is shared between workers.
   ParallelForEach(static_cast<std::int64_t>(workers_.size()), [&](std::int64_t k) {
     const Worker& worker = workers_[k];
     std::vector<float> dL_dposition(3 * worker.t.size(), 0.0f);
@@ -91,9 +91,9 @@ RayGradient FusedEngine::GradientOfRays(const RayBatch& rays) const {
   return gradient;
 }
 
-// Forward and backward pass of the rays [first, last).
-void FusedEngine::LearnShare(const TargetBatch& batch, std::int64_t first, std::int64_t last,
-                             Worker& worker, std::span<float> ray_error) {
+// Forward and backward pass of the rays [first, last), by one thread.
+void FusedEngine::RunShare(const TargetBatch& batch, std::int64_t first, std::int64_t last,
+                           Worker& worker, std::span<float> ray_error) {
   worker.pixels.Clear(pixel_model_);
   worker.background.assign(background_.raw.size(), 0.0f);
   worker.ray.clear();
@@ -112,24 +112,25 @@ void FusedEngine::LearnShare(const TargetBatch& batch, std::int64_t first, std::
   worker.seconds = worker.tile.Seconds();
 }
 
-StepResult FusedEngine::LearnFrom(const TargetBatch& batch) {
+// Forward and backward pass of a batch, by all threads.
+StepResult FusedEngine::RunBatch(const TargetBatch& batch) {
   const std::int64_t count = batch.rays.Size();
-  // A fixed share of the rays for each thread, so that sums repeat bit for bit.
+  // Each thread has a fixed share of the rays, so that sums are the same bit for bit in every run.
   const auto threads = static_cast<std::int64_t>(NumThreads());
   workers_.resize(threads);
   std::vector<float> ray_error(count);
   ParallelFor(threads, 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t k = begin; k < end; ++k) {
-      LearnShare(batch, count * k / threads, count * (k + 1) / threads, workers_[k], ray_error);
+      RunShare(batch, count * k / threads, count * (k + 1) / threads, workers_[k], ray_error);
     }
   });
-  StepResult result = AddUp(count);
+  StepResult result = ReduceWorkers(count);
   result.ray_error = std::move(ray_error);
   return result;
 }
 
-// Adds the workers' sums, in their order, to the gradients of the parameters.
-StepResult FusedEngine::AddUp(std::int64_t rays) {
+// Adds the workers' gradients, in their order, to those of the parameters.
+StepResult FusedEngine::ReduceWorkers(std::int64_t rays) {
   StepResult result;
   std::vector<double> dL_dlog_gain(pixel_model_.gain.size(), 0.0);
   std::vector<float> dL_dmap(background_.raw.size(), 0.0f);

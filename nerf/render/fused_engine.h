@@ -12,9 +12,9 @@ namespace nerf {
 
 struct RayGradient;
 
-// What LibTorchEngine defines, a tile of rays at a time: placing of samples, encoding, networks,
-// compositing, loss and the backward pass run one after the other while the tile's samples are in
-// the core's cache, with kernels of our own on LibTorch's parameters, in float.
+// Computes what LibTorchEngine defines, one tile of rays at a time: sample placement, encoding,
+// networks, compositing, loss and backward pass run in sequence while the tile's samples are in the
+// core's cache, with hand-written kernels on LibTorch's parameters, in float.
 class FusedEngine : public Engine {
  public:
   // `parts` must outlive it.
@@ -29,10 +29,10 @@ class FusedEngine : public Engine {
  private:
   struct Worker;
   void Refresh(const StepContext& context);
-  StepResult LearnFrom(const TargetBatch& batch);
-  void LearnShare(const TargetBatch& batch, std::int64_t first, std::int64_t last, Worker& worker,
-                  std::span<float> ray_error);
-  StepResult AddUp(std::int64_t rays);
+  StepResult RunBatch(const TargetBatch& batch);
+  void RunShare(const TargetBatch& batch, std::int64_t first, std::int64_t last, Worker& worker,
+                std::span<float> ray_error);
+  StepResult ReduceWorkers(std::int64_t rays);
   RayGradient GradientOfRays(const RayBatch& rays) const;
   void AddDepthLoss(const TargetBatch& batch, std::int64_t first, Worker& worker) const;
   void Backward(const TargetBatch& batch, std::int64_t first, Worker& worker,
@@ -40,9 +40,9 @@ class FusedEngine : public Engine {
 
   const ModelParts& parts_;
   FusedForward forward_;
-  BackgroundMap background_;  // where it is learned
+  BackgroundMap background_;  // if learned
   PixelModel pixel_model_;
-  std::vector<Worker> workers_;  // one a thread
+  std::vector<Worker> workers_;  // one per thread
 };
 
 }  // namespace nerf

@@ -11,8 +11,8 @@
 namespace nerf {
 namespace {
 
-// A tile takes rays until it has this many samples: their activations, a kilobyte each, then stay
-// in a core's second-level cache.
+// A tile is full when it has this many samples: their activations, a kilobyte each, fit in a core's
+// second-level cache.
 constexpr std::int64_t kTileSamples = 256;
 
 }  // namespace
@@ -29,8 +29,8 @@ void FusedForward::Refresh(const Annealing& annealing) {
   if (proposal_) proposal_->Refresh(annealing.proposal);
 }
 
-// The samples of rays from `first` on, as many rays as fill a tile. Returns the first ray that is
-// not in it.
+// Places the samples of rays from `first` on, as many rays as fill a tile. Returns the ray after
+// the last.
 std::int64_t FusedForward::PlaceSamples(const RayBatch& rays, std::int64_t first, std::int64_t last,
                                         FusedTile& tile) const {
   tile.ray.clear();
@@ -57,7 +57,7 @@ std::int64_t FusedForward::PlaceSamples(const RayBatch& rays, std::int64_t first
   return end;
 }
 
-// Drops the samples behind the point where a ray's transmittance falls below the bound.
+// Removes the samples behind the point where a ray's transmittance falls below the bound.
 void FusedForward::KeepVisible(FusedTile& tile) const {
   const std::int64_t rays = tile.Rays();
   tile.kept_of_ray.resize(rays);

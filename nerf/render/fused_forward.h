@@ -14,17 +14,17 @@
 
 namespace nerf {
 
-// The rays of a tile between their stages, and what the backward pass needs.
+// The state of a tile of rays between stages, and the intermediate results for the backward pass.
 struct FusedTile {
   ProposalTile proposal;
   RaySamples samples;
   std::vector<std::int64_t> ray_begin;  // [R+1]
-  std::vector<std::int64_t> ray;        // [S] of the batch
+  std::vector<std::int64_t> ray;        // [S] index into the batch
   std::vector<std::int64_t> kept_of_ray, kept;
   FieldTile field;
   std::vector<float> rgb, opacity, depth;                // [R,3], [R], [R]
-  std::int64_t placed = 0, shaded = 0;                   // samples so far
-  double sampling_seconds = 0, compositing_seconds = 0;  // so far
+  std::int64_t placed = 0, shaded = 0;                   // samples, accumulated
+  double sampling_seconds = 0, compositing_seconds = 0;  // accumulated
 
   StageSeconds Seconds() const {
     StageSeconds seconds = field.density.seconds;
@@ -40,17 +40,17 @@ struct FusedTile {
   }
 };
 
-// A tile of rays from their origins to their pixels.
+// The forward pass of a tile of rays, from their origins to their pixels.
 class FusedForward {
  public:
   // `parts` must outlive it.
   explicit FusedForward(const ModelParts& parts);
 
-  // Copies the networks' weights, which the optimiser changes between batches; hash tables are read
-  // where they are. From then on Run is safe from any thread.
+  // Copies the networks' weights, which the optimiser changes between batches; hash tables are not
+  // copied. Until the next Refresh, Run is safe from any thread.
   void Refresh(const Annealing& annealing);
 
-  // The rays from `first` on, as many as fill a tile. Returns the first ray that is not in it.
+  // Renders the rays from `first` on, as many as fill a tile. Returns the ray after the last.
   std::int64_t Run(const RayBatch& rays, std::int64_t first, std::int64_t last,
                    FusedTile& tile) const;
 
@@ -69,8 +69,9 @@ class FusedForward {
   std::optional<TileProposal> proposal_;
 };
 
-// Names the first ray of a tile whose colour is not finite, and the stage that made it so.
-//   target  [R,3] of the tile, whose first ray is `first` of the batch
+// Names the first ray of a tile with a non-finite value, and the stage that produced it.
+//   target  [R,3] of the tile
+//   first   index of the tile's first ray in the batch
 std::string DescribeNonFinite(const FusedTile& tile, std::span<const float> target,
                               std::int64_t first);
 

@@ -30,7 +30,7 @@ RenderOutput FusedRenderer::RenderRays(const RayBatch& rays) const {
   const auto far = static_cast<float>(parts_.config.march.far_distance);
   std::atomic<std::int64_t> samples = 0;
   std::mutex adding;
-  // Neighbouring rays share cells; chunks are small enough to keep all threads at work to the end.
+  // Neighbouring rays share cells of the encoding; chunks are small enough to balance the threads.
   constexpr std::int64_t kChunk = 256;
   ParallelForEach((count + kChunk - 1) / kChunk, [&](std::int64_t chunk) {
     FusedTile tile;

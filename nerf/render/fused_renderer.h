@@ -6,10 +6,10 @@
 
 namespace nerf {
 
-// Renders what FusedEngine trains, a tile of rays at a time, without gradients.
+// FusedEngine's forward pass alone.
 class FusedRenderer : public RayRenderer {
  public:
-  // The model as it is now: `parts` must outlive it, and not change.
+  // `parts` must outlive it and must not change.
   explicit FusedRenderer(const ModelParts& parts);
 
   RenderOutput Render(const RayBatch& rays) const override;
@@ -19,7 +19,7 @@ class FusedRenderer : public RayRenderer {
 
   const ModelParts& parts_;
   FusedForward forward_;
-  BackgroundMap background_;  // where it is learned
+  BackgroundMap background_;  // if learned
 };
 
 }  // namespace nerf

@@ -7,7 +7,7 @@
 
 namespace nerf {
 
-// What one thread keeps of its share of a batch.
+// The state of one thread, which processes its share of a batch.
 struct FusedEngine::Worker {
   FusedTile tile;
   FieldGradients field;
@@ -15,9 +15,9 @@ struct FusedEngine::Worker {
   PixelLoss pixels;
   StageSeconds seconds;  // of the thread
   std::vector<float> dL_dsigma, dL_dradiance, dL_dbackground;
-  std::vector<float> background;      // gradients, as BackgroundMap::raw
-  std::vector<float> costs, weights;  // [S] of the samples, where distances are learned
-  // [S] of all samples so far, where poses are refined.
+  std::vector<float> background;      // gradients, in the layout of BackgroundMap::raw
+  std::vector<float> costs, weights;  // [S] for depth supervision
+  // [S] of all samples of the share, for pose refinement.
   std::vector<std::int64_t> ray;
   std::vector<float> t, dL_dlog_sigma;
 };

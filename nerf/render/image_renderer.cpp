@@ -9,11 +9,11 @@
 namespace nerf {
 namespace {
 
-constexpr int kBlock = 4;   // pixels, the side of a block
-constexpr int kTile = 256;  // blocks that are rendered at once
+constexpr int kBlock = 4;   // side of a block, pixels
+constexpr int kTile = 256;  // blocks per rendered batch
 
-// The pixels of block number `block`, row after row of blocks, in an order in which every four in
-// succession are a square, too. Pixels beyond the edge are those at the edge once more.
+// Appends the pixels of block number `block`, counted in rows of blocks. In their order, every four
+// are a square of 2 x 2. Pixels beyond the edge repeat those at the edge.
 void AppendBlock(const Camera& camera, std::int64_t block, std::vector<std::int64_t>& pixels) {
   const int across = (camera.width + kBlock - 1) / kBlock;
   const auto left = static_cast<int>(block % across) * kBlock;
@@ -25,9 +25,10 @@ void AppendBlock(const Camera& camera, std::int64_t block, std::vector<std::int6
   }
 }
 
-// Pixels that the lens does not reach borrow the ray of another in their block, so that the block's
-// mean stays where it was; where it has none, of any. They are painted over later.
-void LendRays(ViewRays& tile) {
+// Pixels outside the lens's field of view get the ray of another pixel of their block, so that the
+// block's mean ray stays valid, or of any pixel if the block has no valid ray. Their colours are
+// replaced later.
+void FillInvalidRays(ViewRays& tile) {
   const std::int64_t count = tile.rays.Size();
   const auto first_valid = [&](std::int64_t begin, std::int64_t end) {
     const auto found = std::find(tile.valid.begin() + begin, tile.valid.begin() + end, 1);
@@ -36,14 +37,14 @@ void LendRays(ViewRays& tile) {
   const std::int64_t any = first_valid(0, count);
   constexpr std::int64_t kPixels = kBlock * kBlock;
   for (std::int64_t begin = 0; begin < count; begin += kPixels) {
-    std::int64_t lender = first_valid(begin, begin + kPixels);
-    if (lender == count) lender = any;
+    std::int64_t source = first_valid(begin, begin + kPixels);
+    if (source == count) source = any;
     for (std::int64_t r = begin; r < begin + kPixels; ++r) {
-      if (tile.valid[r]) lender = r;
-      if (tile.valid[r] || lender == count) continue;
-      std::copy_n(&tile.rays.origin[3 * lender], 3, &tile.rays.origin[3 * r]);
-      std::copy_n(&tile.rays.direction[3 * lender], 3, &tile.rays.direction[3 * r]);
-      tile.rays.spread[r] = tile.rays.spread[lender];
+      if (tile.valid[r]) source = r;
+      if (tile.valid[r] || source == count) continue;
+      std::copy_n(&tile.rays.origin[3 * source], 3, &tile.rays.origin[3 * r]);
+      std::copy_n(&tile.rays.direction[3 * source], 3, &tile.rays.direction[3 * r]);
+      tile.rays.spread[r] = tile.rays.spread[source];
     }
   }
 }
@@ -69,7 +70,7 @@ RenderedView RenderView(const RayRenderer& renderer, const Camera& camera,
     for (std::int64_t block = first; block < last; ++block) AppendBlock(camera, block, pixels);
     ViewRays tile = RaysOfPixels(camera, normalized_from_camera, pixels, background);
     const bool any = std::ranges::find(tile.valid, 1) != tile.valid.end();
-    LendRays(tile);
+    FillInvalidRays(tile);
     const RenderOutput out = any ? renderer.Render(tile.rays) : RenderOutput{};
     view.samples += out.samples;
     view.seconds.Add(out.seconds);

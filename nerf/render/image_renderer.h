@@ -9,7 +9,7 @@
 
 namespace nerf {
 
-// A rendered view. Pixels that the lens does not reach are the background with opacity 0.
+// A rendered view. Pixels outside the lens's field of view have the background and opacity 0.
 struct RenderedView {
   Image rgb;      // 3 channels
   Image opacity;  // 1 channel, [0,1]
@@ -18,17 +18,16 @@ struct RenderedView {
   StageSeconds seconds;
 };
 
-// Renders every pixel of a camera, a tile of rays at a time, so that memory does not grow with the
-// size of the image beyond the image itself. Rays go in blocks of 4 x 4 pixels, a block in squares
-// of 2 x 2: every 16 and every 4 rays of a batch, in order, are neighbours.
-//   progress  called with the number of pixels done, after each tile; throw from it to stop
+// Renders all pixels of a camera in batches of bounded size. Rays are in blocks of 4 x 4 pixels,
+// a block in squares of 2 x 2: every 16 and every 4 successive rays of a batch are neighbours.
+//   progress  called with the number of pixels done, after each batch; throw from it to stop
 RenderedView RenderView(const RayRenderer& renderer, const Camera& camera,
                         const Eigen::Isometry3d& normalized_from_camera,
                         const Eigen::Vector3f& background, ColorEncoding encoding,
                         const std::function<void(std::int64_t)>& progress = {});
 
-// The picture of a camera from every `factor`-th ray across and down, each repeated over the pixels
-// that it stands for: a first look, in 1 / factor^2 of the time.
+// A preview in 1 / factor^2 of the time: renders at a resolution reduced by `factor`, and repeats
+// each pixel to fill the image.
 Image RenderPreview(const RayRenderer& renderer, const Camera& camera, int factor,
                     const Eigen::Isometry3d& normalized_from_camera,
                     const Eigen::Vector3f& background, ColorEncoding encoding);

@@ -22,11 +22,11 @@
 namespace nerf {
 namespace {
 
-// Samples a single evaluation of the field takes when no gradients are needed: intermediate results
-// then stay near the cache, and memory bounded.
+// Samples per evaluation of the field where no gradients are needed: bounds memory, and keeps
+// intermediate results close to the cache.
 constexpr std::int64_t kChunk = 1 << 15;
 
-// Scales what reaches the field's outputs on the way back; forward nothing changes.
+// Scales the gradients of the field's outputs; see GradientScalingOptions.
 void ScaleGradients(const FieldOutput& field, const torch::Tensor& t, double full_distance) {
   if (full_distance == 0 || !field.sigma.requires_grad()) return;
   const torch::Tensor scale = torch::clamp((t / full_distance).square(), 0.0, 1.0);
@@ -44,7 +44,7 @@ struct LibTorchEngine::Evaluated {
   VolumeRendering pixels;
 };
 
-// The patches that samples stand for; empty where they are points.
+// The footprints of the samples; empty without anti-aliasing.
 std::vector<float> LibTorchEngine::FootprintsOf(const RayBatch& rays,
                                                 const PackedSamples& samples) const {
   if (!Effects().anti_aliasing) return {};
@@ -61,8 +61,8 @@ torch::Tensor LibTorchEngine::AntiAliasingWeightsOf(std::span<const float> footp
       .clone();
 }
 
-// Densities without gradients, a chunk of positions at a time.
-//   footprint  [S], see Footprints; or empty
+// Densities without gradients, in chunks.
+//   footprint  [S] or empty
 std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
                                              std::span<const float> footprint, double detail,
                                              DensityFunction density) const {
@@ -84,8 +84,8 @@ std::vector<float> LibTorchEngine::Densities(std::span<const float> positions,
   return sigma;
 }
 
-// The samples in front of the point where a ray's transmittance falls below the bound: found from
-// densities alone and without gradients, so that colour and gradients are computed for no other.
+// The samples in front of the point where a ray's transmittance falls below the bound, found from
+// densities without gradients. Colour and gradients are computed only for these.
 PackedSamples LibTorchEngine::VisibleSamples(const RayBatch& rays, const PackedSamples& samples,
                                              double detail) const {
   const std::vector<float> sigma =
@@ -98,7 +98,7 @@ PackedSamples LibTorchEngine::VisibleSamples(const RayBatch& rays, const PackedS
   return KeepFront(samples, kept);
 }
 
-// What rays see where they meet nothing, [R,3].
+// The background of each ray, [R,3].
 torch::Tensor LibTorchEngine::BackgroundOf(const RayBatch& rays) const {
   const torch::Dtype dtype = parts_.field->Dtype();
   return parts_.background
@@ -106,7 +106,7 @@ torch::Tensor LibTorchEngine::BackgroundOf(const RayBatch& rays) const {
              : TensorOf(rays.background, {rays.Size(), 3}, dtype);
 }
 
-// The same in training: a background that was laid under cut-out photographs has no exposure.
+// The same for training: a fixed background, behind photographs with alpha, has no exposure.
 torch::Tensor LibTorchEngine::TrainingBackground(
     const RayBatch& rays, const std::vector<std::int64_t>& photograph) const {
   if (!parts_.exposure || parts_.background) return BackgroundOf(rays);
@@ -114,9 +114,9 @@ torch::Tensor LibTorchEngine::TrainingBackground(
                                         TensorOf(photograph, {rays.Size()}, torch::kLong));
 }
 
-// A ray's path from its origin to its pixel.
-//   background  [R,3] what it sees where it meets nothing
-//   refined     the rays at refined poses, for gradients; null: constants
+// The forward pass, from rays to pixels.
+//   background  [R,3]
+//   refined     the rays as differentiable tensors, for pose refinement; or null
 LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays,
                                                    const torch::Tensor& background,
                                                    const RefinedRays* refined,
@@ -141,7 +141,7 @@ LibTorchEngine::Evaluated LibTorchEngine::Evaluate(const RayBatch& rays,
   const torch::Tensor t = TensorOf(out.samples.t, {size}, dtype);
   torch::Tensor positions = TensorOf(out.samples.position, {size, 3}, dtype);
   if (refined) {
-    // The value to the last bit as samples have it, with the gradient of refined rays.
+    // Bit for bit the positions of the samples, with the gradient by the refined rays.
     const torch::Tensor moving = SamplePositions(refined->origin, refined->direction, ray, t);
     positions = positions + (moving - moving.detach());
   }
@@ -180,32 +180,32 @@ RenderOutput LibTorchEngine::Render(const RayBatch& rays) const {
   return result;
 }
 
-// As nerf/effects/depth_supervision.h defines it: what the samples cost is rendered like a colour,
-// before the cost of seeing nothing.
+// The loss of nerf/effects/depth_supervision.h: the samples' costs are composited like a colour,
+// in front of a background of cost 1.
 torch::Tensor LibTorchEngine::DepthLoss(const TargetBatch& batch, const Evaluated& out) const {
   const torch::Dtype dtype = parts_.field->Dtype();
   const std::int64_t count = batch.rays.Size(), size = out.samples.Size();
   const std::vector<float> costs =
       DepthCosts(out.samples.t, out.samples.ray, batch.distance, *Effects().depth_supervision);
   const torch::Tensor of_sample = TensorOf(costs, {size, 1}, dtype).expand({size, 3}).clone();
-  const torch::Tensor of_nothing =
+  const torch::Tensor of_background =
       (TensorOf(batch.distance, {count, 1}, dtype) > 0).to(dtype).expand({count, 3}).clone();
-  const torch::Tensor paid =
+  const torch::Tensor cost =
       RenderVolume(TensorOf(out.samples.ray_begin, {count + 1}, torch::kLong), out.field.sigma,
                    of_sample, TensorOf(out.samples.dt, {size}, dtype),
-                   TensorOf(out.samples.t, {size}, dtype), of_nothing)
+                   TensorOf(out.samples.t, {size}, dtype), of_background)
           .rgb;
-  return Effects().depth_supervision->weight * paid.mean();
+  return Effects().depth_supervision->weight * cost.mean();
 }
 
 StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch,
                                                const StepContext& context) {
-  if (batch.rays.Size() == 0) return {};  // the mean over nothing is not a number
+  if (batch.rays.Size() == 0) return {};  // the mean over no rays is NaN
   const torch::Dtype dtype = parts_.field->Dtype();
   const std::int64_t count = batch.rays.Size();
   CheckRays(batch.rays);
   Evaluated out;
-  RayBatch refined_batch;  // autograd reads it until the backward pass is over
+  RayBatch refined_batch;  // must live until the end of the backward pass
   const auto photograph = [&] { return TensorOf(batch.photograph, {count}, torch::kLong); };
   if (parts_.pose_refinement) {
     const RefinedRays refined = parts_.pose_refinement->forward(
@@ -236,7 +236,7 @@ StepResult LibTorchEngine::AccumulateGradients(const TargetBatch& batch,
     total = loss + ProposalLoss(out.proposed, out.samples, out.field.sigma, parts_.config.proposal,
                                 parts_.config.march);
   }
-  // A batch whose rays meet no occupied cell depends on no parameter.
+  // A batch without any samples depends on no parameter.
   if (total.requires_grad()) total.backward();
   torch::Tensor of_ray = (rgb.detach() - target).square().mean(1);
   result.squared_error = of_ray.mean().item<double>();

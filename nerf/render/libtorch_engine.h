@@ -12,8 +12,8 @@
 
 namespace nerf {
 
-// The definition of what rays see: each stage an autograd operation on whole batches, in float or,
-// after field->to(torch::kDouble), in double.
+// The definition of rendering and training: each stage is an autograd operation on whole batches,
+// in float or, after field->to(torch::kDouble), in double.
 class LibTorchEngine : public Engine {
  public:
   // `parts` must outlive it.

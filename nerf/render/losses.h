@@ -8,14 +8,16 @@
 
 namespace nerf {
 
-// Mean over rays and channels of the squared error, or of Huber's: e^2/2 for |e| <= delta,
-// delta (|e| - delta/2) beyond, divided by delta. Source: Huber 1964. Where it is to be robust, the
-// mean over rays of RobustLoss(l), l being a ray's mean over channels.
-//   predicted, target  [R,3]
+// The colour loss: the mean over rays and channels of the squared error or of the Huber loss, which
+// is e^2/2 for |e| <= delta and delta (|e| - delta/2) beyond, divided by delta. Source: Huber 1964.
+// With `robust`, the mean over rays of RobustLoss(l), where l is a ray's mean over channels.
+//   predicted, target  [R,3]    returns  scalar
+// Differentiable in predicted. Throws c10::Error on a shape mismatch.
 torch::Tensor ColorLoss(const torch::Tensor& predicted, const torch::Tensor& target,
                         const LossOptions& options, const std::optional<RobustOptions>& robust);
 
-// The weight of each ray's gradients under a robust loss, [R]: RobustWeight(l). Without gradients.
+// The weight of each ray's gradients under a robust loss: RobustWeight(l).
+//   returns  [R], not differentiable
 torch::Tensor RobustRayWeights(const torch::Tensor& predicted, const torch::Tensor& target,
                                const LossOptions& options, const RobustOptions& robust);
 

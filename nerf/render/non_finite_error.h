@@ -5,7 +5,7 @@
 
 namespace nerf {
 
-// Training met a value that is not finite. The message names the step, the ray and the stage.
+// A non-finite value in training. The message names the step, the ray and the stage.
 class NonFiniteError : public std::runtime_error {
  public:
   explicit NonFiniteError(const std::string& message) : std::runtime_error(message) {}

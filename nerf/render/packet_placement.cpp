@@ -12,9 +12,9 @@ ProposalOptions WithSamples(ProposalOptions options, int samples) {
   return options;
 }
 
-// The ray through the middle of each packet of rays [first, last).
-void MiddleRays(const RayBatch& rays, std::int64_t first, std::int64_t last, std::int64_t packet,
-                RayBatch& out) {
+// The mean ray of each packet of rays [first, last).
+void MeanRays(const RayBatch& rays, std::int64_t first, std::int64_t last, std::int64_t packet,
+              RayBatch& out) {
   out.Resize((last - first + packet - 1) / packet);
   for (std::int64_t p = 0; p < out.Size(); ++p) {
     const std::int64_t begin = first + p * packet, end = std::min(last, begin + packet);
@@ -41,14 +41,15 @@ PacketPlacement::PacketPlacement(const ModelParts& parts, const RenderQuality& q
   proposal_->Refresh(parts.annealing.proposal);
 }
 
-// Sets ray k of the tile on its way through the intervals of ray `asked` of the proposal's tile.
-void PacketPlacement::PackRay(const RayBatch& rays, std::int64_t r, std::int64_t asked,
+// Gives ray r of the batch, which is ray k of the tile, the intervals of ray `from` of the
+// proposal's tile.
+void PacketPlacement::PackRay(const RayBatch& rays, std::int64_t r, std::int64_t from,
                               std::int64_t k, PlacedTile& tile) const {
   const std::int64_t each = samples_;
   RaySamples& s = tile.samples;
   tile.of_ray[k] = {k * each, (k + 1) * each};
   PackIntervalsOfRay(
-      rays, r, march_, std::span(tile.proposal.edges).subspan(asked * (each + 1), each + 1),
+      rays, r, march_, std::span(tile.proposal.edges).subspan(from * (each + 1), each + 1),
       std::span(s.position).subspan(3 * k * each, 3 * each), std::span(s.t).subspan(k * each, each),
       std::span(s.dt).subspan(k * each, each));
 }
@@ -70,10 +71,10 @@ void PacketPlacement::Place(const RayBatch& rays, std::int64_t first, std::int64
     return;
   }
   if (packet_ == 1) {
-    proposal_->Cut(rays, first, last, tile.proposal);
+    proposal_->Resample(rays, first, last, tile.proposal);
   } else {
-    MiddleRays(rays, first, last, packet_, tile.asked);
-    proposal_->Cut(tile.asked, 0, tile.asked.Size(), tile.proposal);
+    MeanRays(rays, first, last, packet_, tile.proposal_rays);
+    proposal_->Resample(tile.proposal_rays, 0, tile.proposal_rays.Size(), tile.proposal);
   }
   s.position.resize(3 * count * samples_);
   s.t.resize(count * samples_);
@@ -81,17 +82,18 @@ void PacketPlacement::Place(const RayBatch& rays, std::int64_t first, std::int64
   for (std::int64_t k = 0; k < count; ++k) PackRay(rays, first + k, k / packet_, k, tile);
 }
 
-void PacketPlacement::PlaceAlone(const RayBatch& rays, std::int64_t first,
-                                 std::span<const std::int64_t> missed, PlacedTile& tile) const {
+void PacketPlacement::PlaceIndividually(const RayBatch& rays, std::int64_t first,
+                                        std::span<const std::int64_t> missed,
+                                        PlacedTile& tile) const {
   const auto count = static_cast<std::int64_t>(missed.size());
-  tile.asked.Resize(count);
+  tile.proposal_rays.Resize(count);
   for (std::int64_t m = 0; m < count; ++m) {
     const std::int64_t r = first + missed[m];
-    std::copy_n(&rays.origin[3 * r], 3, &tile.asked.origin[3 * m]);
-    std::copy_n(&rays.direction[3 * r], 3, &tile.asked.direction[3 * m]);
-    tile.asked.jitter[m] = rays.jitter[r];
+    std::copy_n(&rays.origin[3 * r], 3, &tile.proposal_rays.origin[3 * m]);
+    std::copy_n(&rays.direction[3 * r], 3, &tile.proposal_rays.direction[3 * m]);
+    tile.proposal_rays.jitter[m] = rays.jitter[r];
   }
-  proposal_->Cut(tile.asked, 0, count, tile.proposal);
+  proposal_->Resample(tile.proposal_rays, 0, count, tile.proposal);
   for (std::int64_t m = 0; m < count; ++m) PackRay(rays, first + missed[m], m, missed[m], tile);
 }
 

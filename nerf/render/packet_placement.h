@@ -13,38 +13,40 @@
 
 namespace nerf {
 
-// Where the samples of a tile of rays stand, for PacketRenderer.
+// The samples of a tile of rays, for PacketRenderer.
 struct PlacedTile {
   struct Range {
     std::int64_t begin = 0, end = 0;
   };
   RaySamples samples;
-  std::vector<Range> of_ray;  // [R] of the samples
+  std::vector<Range> of_ray;  // [R] each ray's range of the samples
 
-  // Room to work in.
-  RayBatch asked;
+  // Scratch memory.
+  RayBatch proposal_rays;
   ProposalTile proposal;
 };
 
-// Places the samples of neighbouring rays: by the grid each ray for itself, by a proposal where the
-// ray through the middle of their packet finds matter.
+// Places the samples of rays: by the occupancy grid for each ray, by the proposal network for the
+// mean ray of a packet of neighbours, which share its distances.
 class PacketPlacement {
  public:
-  // `parts` must outlive it, and not change.
+  // `parts` must outlive it and must not change.
   PacketPlacement(const ModelParts& parts, const RenderQuality& quality);
 
-  // Rays [first, last) of a batch, every quality.packet of them, in order, neighbours.
+  // Places the samples of rays [first, last) of a batch; every quality.packet successive rays are a
+  // packet of neighbours.
   void Place(const RayBatch& rays, std::int64_t first, std::int64_t last, PlacedTile& tile) const;
 
-  // Whether rays share the places of their packet, and may have missed what they meet.
-  bool Shared() const { return proposal_ && packet_ > 1; }
+  // Whether the rays of a packet share distances, which can miss a surface that one of them hits.
+  bool SharesSamples() const { return proposal_ && packet_ > 1; }
 
-  // Rays of the tile, by their place in it, anew and each by itself.
-  void PlaceAlone(const RayBatch& rays, std::int64_t first, std::span<const std::int64_t> missed,
-                  PlacedTile& tile) const;
+  // Places the samples of some rays of the tile again, each ray by itself.
+  //   missed  indices into the tile
+  void PlaceIndividually(const RayBatch& rays, std::int64_t first,
+                         std::span<const std::int64_t> missed, PlacedTile& tile) const;
 
  private:
-  void PackRay(const RayBatch& rays, std::int64_t r, std::int64_t asked, std::int64_t k,
+  void PackRay(const RayBatch& rays, std::int64_t r, std::int64_t from, std::int64_t k,
                PlacedTile& tile) const;
 
   const OccupancyGrid& grid_;

@@ -12,25 +12,26 @@
 namespace nerf {
 namespace {
 
-// Rays of a tile, a whole number of packets, and the samples that each goes on by at a time: their
-// activations fit the second-level cache.
+// Rays of a tile (a whole number of packets), and samples by which each ray advances at a time:
+// their activations fit in the second-level cache.
 constexpr std::int64_t kTileRays = 128;
 constexpr std::int64_t kSlab = 4;
 
-// Light that gets through where a packet's samples missed what its ray meets.
-constexpr double kMissed = 0.1;
+// A ray with more transmittance than this at its end may have hit a surface that the shared samples
+// of its packet missed.
+constexpr double kMissedTransmittance = 0.1;
 
 }  // namespace
 
 struct PacketRenderer::Tile {
-  // A ray on its way.
+  // A ray that is being followed.
   struct Ray {
-    std::int64_t next = 0, end = 0;  // samples ahead
+    std::int64_t next = 0, end = 0;  // remaining samples
     double optical_depth = 0;
-    float met = 0;     // weight so far
-    float shaded = 0;  // weight that has a colour
-    float heaviest_weight = 0;
-    std::int64_t heaviest = 0;  // sample
+    float accumulated_weight = 0;
+    float shaded_weight = 0;  // the part of it with a colour
+    float largest_weight = 0;
+    std::int64_t largest = 0;  // sample with the largest weight
     float weighted_t = 0;
     float rgb[3] = {0, 0, 0};
 
@@ -39,11 +40,11 @@ struct PacketRenderer::Tile {
 
   PlacedTile placed;
   std::vector<Ray> rays;
-  std::vector<std::int64_t> alive;  // rays of the tile
+  std::vector<std::int64_t> alive;  // rays that are not finished, indices into the tile
 
-  // Of the samples that the rays go on by.
+  // The samples that are being evaluated.
   std::vector<float> position;            // [S,3]
-  std::vector<std::int64_t> sample, ray;  // [S] of the tile
+  std::vector<std::int64_t> sample, ray;  // [S] indices into the tile
   std::vector<std::int64_t> kept, kept_ray;
   std::vector<float> kept_weight;
   FieldTile field;
@@ -60,7 +61,7 @@ PacketRenderer::PacketRenderer(const ModelParts& parts, const RenderQuality& qua
   if (parts.background) background_ = parts.background->Map();
 }
 
-// Sets the rays of a tile at their first samples.
+// Places the samples of a tile and starts its rays.
 void PacketRenderer::Begin(const RayBatch& rays, std::int64_t first, std::int64_t last,
                            Tile& tile) const {
   LapTimer timer;
@@ -79,18 +80,18 @@ void PacketRenderer::Begin(const RayBatch& rays, std::int64_t first, std::int64_
   }
 }
 
-// Rays beside an edge, for which the middle of their packet looked in the wrong place: much light
-// still gets through. They begin anew, each by itself.
-void PacketRenderer::BeginMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const {
-  if (!placement_.Shared()) return;
+// Restarts, each with samples of its own, rays for which the shared samples may have missed a
+// surface, such as those at a silhouette: their transmittance is high at the end.
+void PacketRenderer::RestartMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const {
+  if (!placement_.SharesSamples()) return;
   for (std::size_t k = 0; k < tile.rays.size(); ++k) {
     const Tile::Ray& ray = tile.rays[k];
-    if (ray.next == ray.end && ray.Transmittance() > kMissed) {
+    if (ray.next == ray.end && ray.Transmittance() > kMissedTransmittance) {
       tile.alive.push_back(static_cast<std::int64_t>(k));
     }
   }
   LapTimer timer;
-  placement_.PlaceAlone(rays, first, tile.alive, tile.placed);
+  placement_.PlaceIndividually(rays, first, tile.alive, tile.placed);
   timer.Lap(tile.sampling_seconds);
   for (const std::int64_t k : tile.alive) {
     const auto [begin, end] = tile.placed.of_ray[k];
@@ -100,7 +101,7 @@ void PacketRenderer::BeginMissed(const RayBatch& rays, std::int64_t first, Tile&
   }
 }
 
-// Gives a colour to the samples that are kept, and adds them to their rays.
+// Evaluates the radiance of the kept samples and adds it to their rays.
 void PacketRenderer::Shade(const RayBatch& rays, std::int64_t first, Tile& tile) const {
   field_.Density().Keep(tile.kept, tile.field.density);
   const auto count = static_cast<std::int64_t>(tile.kept.size());
@@ -108,14 +109,14 @@ void PacketRenderer::Shade(const RayBatch& rays, std::int64_t first, Tile& tile)
   for (std::int64_t i = 0; i < count; ++i) {
     Tile::Ray& ray = tile.rays[tile.kept_ray[i]];
     const float weight = tile.kept_weight[i];
-    ray.shaded += weight;
+    ray.shaded_weight += weight;
     for (int c = 0; c < 3; ++c) ray.rgb[c] += weight * tile.field.radiance[3 * i + c];
   }
 }
 
-// Densities of the samples that the tile goes on by.
+// Evaluates the densities of the tile's current samples.
 void PacketRenderer::Evaluate(const RayBatch& rays, std::int64_t first, Tile& tile) const {
-  tile.field.density.footprint.clear();  // the tile may be another renderer's
+  tile.field.density.footprint.clear();  // tiles are shared between renderers of a thread
   if (const auto& options = parts_.config.effects.anti_aliasing) {
     std::vector<std::int64_t> ray;
     std::vector<float> t;
@@ -129,7 +130,7 @@ void PacketRenderer::Evaluate(const RayBatch& rays, std::int64_t first, Tile& ti
   tile.evaluated += static_cast<std::int64_t>(tile.sample.size());
 }
 
-// Takes every ray that is still alive a few samples further.
+// Advances every ray that is alive by a few samples.
 void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const {
   tile.position.clear();
   tile.sample.clear();
@@ -151,27 +152,30 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
   tile.kept_ray.clear();
   tile.kept_weight.clear();
   const auto share = static_cast<float>(quality_.color_share);
-  const auto shares_met = [share](float weight) { return std::floor(weight / share + 0.5f); };
+  // The colour of each share of a ray's weight is that of the sample in its middle.
+  const auto completed_shares = [share](float weight) { return std::floor(weight / share + 0.5f); };
   for (std::size_t i = 0; i < tile.sample.size(); ++i) {
     Tile::Ray& ray = tile.rays[tile.ray[i]];
     const float dt = s.dt[tile.sample[i]];
-    // As CompositeForward has it: an interval of length 0 is empty, whatever its density.
+    // As in CompositeForward, an interval of length 0 is empty, whatever its density.
     const double x = dt > 0 ? static_cast<double>(tile.field.density.sigma[i]) * dt : 0;
     const auto weight = static_cast<float>(ray.Transmittance() * -std::expm1(-x));
     ray.optical_depth += x;
     ray.weighted_t += weight * s.t[tile.sample[i]];
-    const float before = ray.met;
-    ray.met += weight;
-    if (weight > ray.heaviest_weight) {
-      ray.heaviest_weight = weight;
-      ray.heaviest = tile.sample[i];
+    const float before = ray.accumulated_weight;
+    ray.accumulated_weight += weight;
+    if (weight > ray.largest_weight) {
+      ray.largest_weight = weight;
+      ray.largest = tile.sample[i];
     }
-    const float counts =
-        quality_.color_share > 0 ? share * (shares_met(ray.met) - shares_met(before)) : weight;
-    if (counts == 0) continue;  // NaN goes on, to be seen
+    const float color_weight =
+        quality_.color_share > 0
+            ? share * (completed_shares(ray.accumulated_weight) - completed_shares(before))
+            : weight;
+    if (color_weight == 0) continue;  // a NaN is kept, so that it is visible
     tile.kept.push_back(static_cast<std::int64_t>(i));
     tile.kept_ray.push_back(tile.ray[i]);
-    tile.kept_weight.push_back(counts);
+    tile.kept_weight.push_back(color_weight);
   }
   Shade(rays, first, tile);
   std::erase_if(tile.alive, [&](std::int64_t k) {
@@ -180,7 +184,8 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
   });
 }
 
-// Rays that met less than half a share, through thin fog, take the colour of their heaviest sample.
+// Rays that accumulated less than half a share of weight get the colour of the sample with the
+// largest weight.
 void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const {
   tile.position.clear();
   tile.sample.clear();
@@ -189,10 +194,10 @@ void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& 
   tile.kept_ray.clear();
   for (std::size_t k = 0; k < tile.rays.size(); ++k) {
     const Tile::Ray& ray = tile.rays[k];
-    if (!(ray.shaded == 0 && ray.met > 0)) continue;
-    const auto position = tile.placed.samples.position.begin() + 3 * ray.heaviest;
+    if (!(ray.shaded_weight == 0 && ray.accumulated_weight > 0)) continue;
+    const auto position = tile.placed.samples.position.begin() + 3 * ray.largest;
     tile.position.insert(tile.position.end(), position, position + 3);
-    tile.sample.push_back(ray.heaviest);
+    tile.sample.push_back(ray.largest);
     tile.ray.push_back(static_cast<std::int64_t>(k));
     tile.kept.push_back(static_cast<std::int64_t>(tile.kept.size()));
     tile.kept_ray.push_back(static_cast<std::int64_t>(k));
@@ -203,7 +208,7 @@ void PacketRenderer::ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& 
   Shade(rays, first, tile);
 }
 
-// Writes the pixels of a tile whose rays are through.
+// Writes the pixels of a tile whose rays are finished.
 void PacketRenderer::Finish(const RayBatch& rays, std::int64_t first, const Tile& tile,
                             RenderOutput& out) const {
   const auto near = static_cast<float>(parts_.config.march.near_distance);
@@ -211,18 +216,18 @@ void PacketRenderer::Finish(const RayBatch& rays, std::int64_t first, const Tile
   for (std::size_t k = 0; k < tile.rays.size(); ++k) {
     const Tile::Ray& ray = tile.rays[k];
     const std::int64_t r = first + static_cast<std::int64_t>(k);
-    // The light that is left where a ray is given up, and weight without a colour, take on the
-    // colour of the rest.
-    const bool given_up = ray.next < ray.end;
-    const float opacity = given_up ? 1 : static_cast<float>(-std::expm1(-ray.optical_depth));
-    const float scale = ray.shaded > 0 ? opacity / ray.shaded : 0.0f;
-    const float through = ray.shaded > 0 ? 1 - opacity : 1.0f;
+    // A ray that was stopped early counts as opaque. Its remaining transmittance, and weight
+    // without a colour, get the mean colour of the rest.
+    const bool stopped_early = ray.next < ray.end;
+    const float opacity = stopped_early ? 1 : static_cast<float>(-std::expm1(-ray.optical_depth));
+    const float scale = ray.shaded_weight > 0 ? opacity / ray.shaded_weight : 0.0f;
+    const float transmittance = ray.shaded_weight > 0 ? 1 - opacity : 1.0f;
     for (int c = 0; c < 3; ++c) {
-      out.rgb[3 * r + c] = scale * ray.rgb[c] + through * rays.background[3 * r + c];
+      out.rgb[3 * r + c] = scale * ray.rgb[c] + transmittance * rays.background[3 * r + c];
     }
     out.opacity[r] = opacity;
-    const auto met = static_cast<float>(-std::expm1(-ray.optical_depth));
-    out.depth[r] = met > 0 ? std::clamp(ray.weighted_t / met, near, far) : 0.0f;
+    const auto weight = static_cast<float>(-std::expm1(-ray.optical_depth));
+    out.depth[r] = weight > 0 ? std::clamp(ray.weighted_t / weight, near, far) : 0.0f;
   }
 }
 
@@ -240,14 +245,14 @@ RenderOutput PacketRenderer::RenderRays(const RayBatch& rays) const {
     const std::int64_t first = part * kTileRays, last = std::min(count, first + kTileRays);
     Begin(rays, first, last, tile);
     while (!tile.alive.empty()) Advance(rays, first, tile);
-    BeginMissed(rays, first, tile);
+    RestartMissed(rays, first, tile);
     while (!tile.alive.empty()) Advance(rays, first, tile);
     ShadeFaint(rays, first, tile);
     Finish(rays, first, tile, out);
     samples += tile.evaluated;
     StageSeconds seconds = tile.field.density.seconds;
     seconds.sampling = tile.sampling_seconds;
-    // Rays are followed in small steps, between which a clock would cost more than it shows.
+    // Rays advance in small steps, too small to time each.
     double all = 0;
     timer.Lap(all);
     seconds.compositing = all - seconds.sampling - seconds.encoding - seconds.networks;

@@ -11,16 +11,16 @@
 
 namespace nerf {
 
-// Renders what FusedEngine renders, with less work where RenderQuality allows it: neighbouring rays
-// share where their samples stand, rays are followed front to back a few samples at a time and
-// leave the tile where no light gets through, and only samples that count are given a colour.
+// Renders like FusedRenderer, but faster where RenderQuality allows approximations: packets of
+// neighbouring rays share sample distances, rays advance front to back a few samples at a time and
+// stop once they are opaque, and radiance is evaluated for few of the samples.
 //
-// Every `quality.packet` rays of a batch, in order, are taken for neighbours (as RenderView sends
-// them). The result is a weighted mean of colours whose weights sum to the opacity, as the exact
-// one is: what is left out moves weight, and never loses it.
+// Every `quality.packet` successive rays of a batch are a packet (the order of RenderView). As in
+// exact rendering, a pixel is a weighted mean of colours whose weights sum to the opacity: the
+// approximations redistribute weight and never lose it.
 class PacketRenderer : public RayRenderer {
  public:
-  // `parts` must outlive it, and not change.
+  // `parts` must outlive it and must not change.
   PacketRenderer(const ModelParts& parts, const RenderQuality& quality);
 
   RenderOutput Render(const RayBatch& rays) const override;
@@ -28,7 +28,7 @@ class PacketRenderer : public RayRenderer {
  private:
   struct Tile;
   void Begin(const RayBatch& rays, std::int64_t first, std::int64_t last, Tile& tile) const;
-  void BeginMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const;
+  void RestartMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Shade(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Evaluate(const RayBatch& rays, std::int64_t first, Tile& tile) const;
@@ -41,7 +41,7 @@ class PacketRenderer : public RayRenderer {
   TileField field_;
   PacketPlacement placement_;
   RenderQuality quality_;
-  BackgroundMap background_;  // where it is learned
+  BackgroundMap background_;  // if learned
 };
 
 }  // namespace nerf

@@ -50,9 +50,9 @@ bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int6
     for (int c = 0; c < 3; ++c) {
       const float target = batch.rgb[3 * (first + r) + c];
       shown[c] = static_cast<double>(gain ? gain[c] * rgb[3 * r + c] : rgb[3 * r + c]);
-      // A clipped pixel is at least that bright.
-      const bool reached = gain && model.saturates && target >= 1 && shown[c] > 1;
-      const double error = reached ? 0.0 : shown[c] - static_cast<double>(target);
+      // A clipped pixel may be brighter than its value.
+      const bool clipped = gain && model.saturates && target >= 1 && shown[c] > 1;
+      const double error = clipped ? 0.0 : shown[c] - static_cast<double>(target);
       const ChannelLoss of_channel = LossOf(error, model.loss);
       of_ray += of_channel.value;
       squared += error * error;
@@ -68,7 +68,7 @@ bool PixelLoss::Add(const PixelModel& model, const TargetBatch& batch, std::int6
       dL_drgb[3 * r + c] =
           static_cast<float>(weight * dL_dshown[c] * static_cast<double>(gain ? gain[c] : 1.0f));
       if (!gain) continue;
-      double exposed = shown[c];  // without what was laid under it afterwards
+      double exposed = shown[c];  // without the fixed background, which has no exposure
       if (model.unexposed) {
         exposed -= static_cast<double>(gain[c] * (1 - opacity[r]) *
                                        batch.rays.background[3 * (first + r) + c]);

@@ -12,35 +12,35 @@
 
 namespace nerf {
 
-// A batch whose rays have backgrounds that the gains will multiply back to what they are.
+// Divides the backgrounds of a batch by the gains (Exposure::DivideByGains).
 //   gain  [photographs,3]
 TargetBatch WithUnexposedBackgrounds(TargetBatch batch, std::span<const float> gain);
 
-// How a photograph comes from what the field shows, and what its difference costs.
+// The model of a photograph's pixels, and their loss.
 struct PixelModel {
   LossOptions loss;
   std::optional<RobustOptions> robust;
-  std::vector<float> gain;  // [photographs,3] of Exposure; empty where that is not simulated
-  bool saturates = false;   // where it is: as Exposure::Saturates
-  bool unexposed = false;  // where it is: rays have backgrounds as Exposure::DivideByGains has them
+  std::vector<float> gain;  // [photographs,3] Exposure::Gains; empty where the effect is off
+  bool saturates = false;   // with gains: Exposure::Saturates
+  bool unexposed = false;   // with gains: the rays' backgrounds are divided by them
 };
 
-// What the pixels of a tile cost, and which way each should change: Exposure, ColorLoss and their
-// derivatives in plain loops, for FusedEngine.
+// The loss of the pixels of a tile and its gradients: Exposure, ColorLoss and their derivatives in
+// plain loops, for FusedEngine.
 struct PixelLoss {
-  double loss = 0, squared_error = 0;         // sums over rays and channels, so far
-  std::vector<double> dL_dlog_gain;           // as gain, so far
+  double loss = 0, squared_error = 0;         // sums over rays and channels, accumulated
+  std::vector<double> dL_dlog_gain;           // [photographs,3], accumulated
   std::vector<float> dL_drgb;                 // [R,3] of the last tile
-  std::vector<float> dL_dopacity, dL_ddepth;  // [R]
+  std::vector<float> dL_dopacity, dL_ddepth;  // [R] of the last tile
 
   void Clear(const PixelModel& model);
 
-  // Compares the pixels of the rays from `first` on with what the batch says of them. The loss of a
+  // Adds the loss of the pixels of a tile, whose first ray is `first` of the batch. The loss of a
   // batch is the mean over its rays and channels.
   //   rgb        [R,3] of the tile
   //   opacity    [R] of the tile
   //   ray_error  [rays of the batch] as StepResult::ray_error
-  // Returns false where the loss of the tile is not finite.
+  // Returns false if the loss of the tile is not finite.
   bool Add(const PixelModel& model, const TargetBatch& batch, std::int64_t first,
            std::span<const float> rgb, std::span<const float> opacity, std::span<float> ray_error);
 };

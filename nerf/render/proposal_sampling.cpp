@@ -12,9 +12,10 @@
 namespace nerf {
 namespace {
 
-constexpr std::int64_t kProposalsWorthAThread = 16;
+constexpr std::int64_t kMinProposalsPerThread = 16;
 
-// Sums a loss of the weights of each ray. `of_ray(r, weights, dL_dweights)` writes the gradient.
+// The sum over rays of a loss of their weights. `of_ray(r, weights, dL_dweights)` returns the loss
+// of a ray and writes its gradient.
 struct LossOfWeightsFunction : torch::autograd::Function<LossOfWeightsFunction> {
   template <class OfRay>
   static torch::Tensor forward(torch::autograd::AutogradContext* ctx, const torch::Tensor& weights,
@@ -23,7 +24,7 @@ struct LossOfWeightsFunction : torch::autograd::Function<LossOfWeightsFunction> 
     const auto rays = static_cast<std::int64_t>(ray_begin->size()) - 1;
     std::vector<double> loss(rays);
     AT_DISPATCH_FLOATING_TYPES(weights.scalar_type(), "loss_of_weights", [&] {
-      ParallelFor(rays, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
+      ParallelFor(rays, kMinProposalsPerThread, [&](std::int64_t first, std::int64_t last) {
         for (std::int64_t r = first; r < last; ++r) {
           const std::int64_t begin = (*ray_begin)[r], count = (*ray_begin)[r + 1] - begin;
           loss[r] = (*of_ray)(r, Span<const scalar_t>(weights).subspan(begin, count),
@@ -64,7 +65,7 @@ PackedSamples PackIntervals(const RayBatch& rays, const MarchOptions& march,
   out.position.resize(3 * count * intervals);
   out.t.resize(count * intervals);
   out.dt.resize(count * intervals);
-  ParallelFor(count, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
+  ParallelFor(count, kMinProposalsPerThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
       PackIntervalsOfRay(rays, r, march,
                          std::span(edges).subspan(r * (intervals + 1), intervals + 1),
@@ -83,31 +84,31 @@ ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
   const std::int64_t count = rays.Size(), coarse = options.intervals, fine = options.samples;
   ProposedSamples out;
   out.coarse_edges.resize(count * (coarse + 1));
-  ParallelFor(count, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
+  ParallelFor(count, kMinProposalsPerThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
       EqualIntervals(rays, r, march,
                      std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1));
     }
   });
-  const PackedSamples asked = PackIntervals(rays, march, out.coarse_edges, coarse);
+  const PackedSamples coarse_samples = PackIntervals(rays, march, out.coarse_edges, coarse);
   const torch::Dtype dtype = proposal.Hash().Table().scalar_type();
-  // Clones: the way back reads them after `asked` is gone.
+  // Cloned, because the backward pass reads them after coarse_samples is gone.
   const auto own = [](const auto& values, at::IntArrayRef shape, torch::Dtype type) {
     return TensorOf(values, shape, type).clone();
   };
-  const torch::Tensor sigma = proposal.Density(own(asked.position, {count * coarse, 3}, dtype));
-  out.coarse_weights = RenderWeights(own(asked.ray_begin, {count + 1}, torch::kLong), sigma,
-                                     own(asked.dt, {count * coarse}, dtype));
+  const torch::Tensor sigma =
+      proposal.Density(own(coarse_samples.position, {count * coarse, 3}, dtype));
+  out.coarse_weights = RenderWeights(own(coarse_samples.ray_begin, {count + 1}, torch::kLong),
+                                     sigma, own(coarse_samples.dt, {count * coarse}, dtype));
 
   const torch::Tensor weights = out.coarse_weights.detach().to(torch::kFloat).contiguous();
   out.edges.resize(count * (fine + 1));
-  ParallelFor(count, kProposalsWorthAThread, [&](std::int64_t first, std::int64_t last) {
+  ParallelFor(count, kMinProposalsPerThread, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t r = first; r < last; ++r) {
       ResampleAnnealed(std::span(out.coarse_edges).subspan(r * (coarse + 1), coarse + 1),
                        Span<const float>(weights).subspan(r * coarse, coarse),
-                       static_cast<float>(exponent),
-                       static_cast<float>(options.padding), rays.jitter[r],
-                       std::span(out.edges).subspan(r * (fine + 1), fine + 1));
+                       static_cast<float>(exponent), static_cast<float>(options.padding),
+                       rays.jitter[r], std::span(out.edges).subspan(r * (fine + 1), fine + 1));
     }
   });
   out.samples = PackIntervals(rays, march, out.edges, fine);

@@ -10,7 +10,7 @@
 
 namespace nerf {
 
-// The samples of a batch of rays that a proposal field chose, and what its loss needs.
+// The samples that a proposal network placed on a batch of rays, and the inputs of its loss.
 struct ProposedSamples {
   PackedSamples samples;
   std::vector<float> edges;         // [R, samples + 1] distances
@@ -18,22 +18,23 @@ struct ProposedSamples {
   torch::Tensor coarse_weights;     // [R * intervals], differentiable in the proposal's parameters
 };
 
-// Intervals as packed samples in their middles. Every ray has the same number of intervals.
-//   edges  [R, intervals + 1]
+// Packed samples at the middles of intervals. Every ray has the same number of intervals.
+//   edges  [R, intervals + 1] distances
 PackedSamples PackIntervals(const RayBatch& rays, const MarchOptions& march,
                             const std::vector<float>& edges, std::int64_t intervals);
 
-// Asks the proposal at intervals of equal length in contracted space, and cuts each ray anew by its
-// weights to the power of `exponent`. The places of the samples carry no gradient.
+// Evaluates the proposal network at coarse samples, intervals of equal length in contracted space,
+// and resamples each ray by its weights to the power of `exponent`. Source: Barron et al. 2022,
+// "Mip-NeRF 360". The coarse weights are differentiable, the sample positions are not.
 ProposedSamples ProposeSamples(const RayBatch& rays, ProposalField& proposal,
                                const ProposalOptions& options, const MarchOptions& march,
                                double exponent = 1);
 
-// Mean over rays of the proposal's loss and of the distortion, each times its weight in the
-// options.
-//   visible  the samples that were evaluated, the front of each ray's proposed ones
+// The mean over rays of the interlevel loss and of the distortion loss, each multiplied by its
+// weight in the options.
+//   visible  the samples that were evaluated: the first ones of each ray's proposed samples
 //   sigma    [S] of the visible samples
-// Differentiable in the proposal's parameters and, for the distortion, in sigma.
+// Differentiable in the proposal's parameters and, through the distortion loss, in sigma.
 torch::Tensor ProposalLoss(const ProposedSamples& proposed, const PackedSamples& visible,
                            const torch::Tensor& sigma, const ProposalOptions& options,
                            const MarchOptions& march);

@@ -20,8 +20,8 @@ void TileProposal::Refresh(double exponent) {
   density_.Refresh(std::vector<float>(proposal_.Hash().Layout().levels.size(), 1.0f));
 }
 
-void TileProposal::Cut(const RayBatch& rays, std::int64_t first, std::int64_t last,
-                       ProposalTile& tile) const {
+void TileProposal::Resample(const RayBatch& rays, std::int64_t first, std::int64_t last,
+                            ProposalTile& tile) const {
   const std::int64_t count = last - first, coarse = options_.intervals, fine = options_.samples;
   tile.coarse_edges.resize(count * (coarse + 1));
   tile.edges.resize(count * (fine + 1));
@@ -46,15 +46,15 @@ void TileProposal::Cut(const RayBatch& rays, std::int64_t first, std::int64_t la
                                  count);
 
   for (std::int64_t k = 0; k < count; ++k) {
-    ResampleAnnealed(coarse_edges(k), std::span(tile.weights).subspan(k * coarse, coarse), exponent_,
-                     static_cast<float>(options_.padding), rays.jitter[first + k],
+    ResampleAnnealed(coarse_edges(k), std::span(tile.weights).subspan(k * coarse, coarse),
+                     exponent_, static_cast<float>(options_.padding), rays.jitter[first + k],
                      std::span(tile.edges).subspan(k * (fine + 1), fine + 1));
   }
 }
 
 void TileProposal::Propose(const RayBatch& rays, std::int64_t first, std::int64_t last,
                            ProposalTile& tile, RaySamples& samples) const {
-  Cut(rays, first, last, tile);
+  Resample(rays, first, last, tile);
   const std::int64_t count = last - first, fine = options_.samples;
   samples.position.resize(3 * count * fine);
   samples.t.resize(count * fine);
@@ -87,8 +87,8 @@ void TileProposal::Backward(std::int64_t rays, std::span<const std::int64_t> ray
         std::span(tile.weights).subspan(k * coarse, coarse),
         std::span(tile.dL_dweights).subspan(k * coarse, coarse));
   }
-  const double share = 1.0 / static_cast<double>(rays);
-  const auto scale = static_cast<float>(options_.loss_weight * share);
+  const double per_ray = 1.0 / static_cast<double>(rays);
+  const auto scale = static_cast<float>(options_.loss_weight * per_ray);
   for (float& g : tile.dL_dweights) g *= scale;
   tile.dL_dsigma.resize(count * coarse);
   kernels::WeightsBackward<float>(tile.ray_begin, tile.density.sigma, tile.dt, tile.dL_dweights,
@@ -107,7 +107,7 @@ void TileProposal::Backward(std::int64_t rays, std::span<const std::int64_t> ray
                                    std::span(dL_dweights).subspan(begin, size));
   }
   kernels::WeightsBackward<float>(ray_begin, sigma, dt, dL_dweights, of_sigma, 0, count);
-  const auto distortion = static_cast<float>(options_.distortion * share);
+  const auto distortion = static_cast<float>(options_.distortion * per_ray);
   for (std::size_t i = 0; i < of_sigma.size(); ++i) dL_dsigma[i] += distortion * of_sigma[i];
 }
 

@@ -12,7 +12,8 @@
 
 namespace nerf {
 
-// The rays of a tile as the proposal saw them, and what the way back needs.
+// The coarse samples and the resampled intervals of a tile of rays, and the intermediate results
+// for the backward pass.
 struct ProposalTile {
   std::vector<float> edges;             // [R, samples + 1]
   std::vector<float> coarse_edges;      // [R, intervals + 1]
@@ -33,16 +34,18 @@ class TileProposal {
   //   exponent  of the proposal's weights, in [0,1]
   void Refresh(double exponent);
 
-  // Cuts rays [first, last) into options.samples intervals each: tile.edges.
-  void Cut(const RayBatch& rays, std::int64_t first, std::int64_t last, ProposalTile& tile) const;
+  // Resamples rays [first, last) into options.samples intervals each: tile.edges.
+  void Resample(const RayBatch& rays, std::int64_t first, std::int64_t last,
+                ProposalTile& tile) const;
 
-  // The same, with the samples in the middle of the intervals.
+  // The same, and places samples at the middles of the intervals.
   void Propose(const RayBatch& rays, std::int64_t first, std::int64_t last, ProposalTile& tile,
                RaySamples& samples) const;
 
-  // The gradients of the proposal's loss and of the distortion, each ray's divided by `rays`.
-  //   ray_begin, sigma, dt  the visible samples, the front of each ray's proposed ones
-  //   dL_dsigma             [S] the distortion's part is added to it
+  // The backward pass of ProposalLoss.
+  //   rays                  of the whole batch, over which the loss is a mean
+  //   ray_begin, sigma, dt  the visible samples: the first ones of each ray's proposed samples
+  //   dL_dsigma             [S] the gradient of the distortion loss is added
   void Backward(std::int64_t rays, std::span<const std::int64_t> ray_begin,
                 std::span<const float> sigma, std::span<const float> dt, ProposalTile& tile,
                 std::span<float> dL_dsigma, DensityGradients& gradients) const;

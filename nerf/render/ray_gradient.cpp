@@ -24,7 +24,7 @@ void AddToRays(const RayBatch& rays, std::span<const std::int64_t> ray, std::spa
     const Vector3f x = Vector3f(&rays.origin[at]) + t[i] * direction;
     Vector3f dL_dx = 0.25f * Vector3f(&dL_dposition[3 * i]);
     if (const float square = x.squaredNorm(); square > 1) {
-      // Through y = g(r) x with g = 2/r - 1/r^2, and log sigma's part -2 log r.
+      // The chain rule through y = g(r) x with g = 2/r - 1/r^2, and the term -2 log r of log sigma.
       const float inverse = 1 / std::sqrt(square);
       const float g = (2 - inverse) * inverse;
       const float dg_dr = 2 * inverse * inverse * (inverse - 1);

@@ -9,22 +9,22 @@
 
 namespace nerf {
 
-// How a loss changes with the rays on which samples stand, at fixed distances along them.
+// The dependence of a loss on the rays, for samples at fixed distances along them.
 
-// The way there, for autograd: where samples stand in the unit cube.
+// Forward pass, for autograd: the positions of samples in the unit cube.
 //   origin, direction  [R,3]    ray  [S] int64    t  [S]    returns [S,3]
 // Differentiable in origin and direction.
 torch::Tensor SamplePositions(const torch::Tensor& origin, const torch::Tensor& direction,
                               const torch::Tensor& ray, const torch::Tensor& t);
 
-// The way back, by hand.
+// Backward pass, without autograd.
 struct RayGradient {
   std::vector<float> origin, direction;  // [R,3]
 };
-// Adds what samples pass on to the rays that they stand on.
+// Adds the gradients of samples to those of their rays.
 //   ray, t          [S]
 //   dL_dposition    [S,3] through the encoding, in the unit cube
-//   dL_dlog_sigma   [S] through the density, which outside the unit ball falls as 1/r^2
+//   dL_dlog_sigma   [S] through RadialShrinkage of the density outside the unit ball
 void AddToRays(const RayBatch& rays, std::span<const std::int64_t> ray, std::span<const float> t,
                std::span<const float> dL_dposition, std::span<const float> dL_dlog_sigma,
                RayGradient& gradient);

@@ -8,21 +8,21 @@
 
 namespace nerf {
 
-// What rays see.
+// The pixels of a batch of rays.
 struct RenderOutput {
-  std::vector<float> rgb;      // [R,3] in the encoding that the field was trained in
+  std::vector<float> rgb;      // [R,3] in the encoding of the field
   std::vector<float> opacity;  // [R] in [0,1]
-  std::vector<float> depth;    // [R] expected distance of what was hit, normalized scene units,
-                               // inside [near, far]; 0 where opacity is 0: there it has no meaning
+  std::vector<float> depth;    // [R] expected distance, normalized scene units, in [near, far];
+                               // 0 where opacity is 0, where it is undefined
   std::int64_t samples = 0;    // points at which the field was evaluated
-  StageSeconds seconds;        // nothing where the renderer does not take its stages' time
+  StageSeconds seconds;        // 0 if the renderer does not time its stages
 };
 
-// Anything that turns rays into colours. Rendering changes nothing: it is safe from any thread as
-// long as nobody changes the model.
+// Renders rays. Thread-safe as long as the model does not change.
 class RayRenderer {
  public:
   virtual ~RayRenderer() = default;
+  // Throws std::invalid_argument naming the first invalid ray.
   virtual RenderOutput Render(const RayBatch& rays) const = 0;
 };
 

@@ -5,18 +5,19 @@
 
 namespace nerf {
 
-// What a rendering leaves out.
+// The approximations of a rendering.
 struct RenderQuality {
-  int packet = 1;    // pixels, side by side, whose samples a proposal places together: 1, 4, 16
-  int samples = 24;  // a ray, where a proposal places them
-  // Weight that one colour stands for: along a ray only the samples in the middle of each such
-  // share of its weight get a colour. 0: each gets its own.
+  int packet = 1;    // neighbouring pixels that share a proposal: 1, 4 or 16
+  int samples = 24;  // per ray, where a proposal network places them
+  // Along a ray, radiance is evaluated once per this share of weight, at its middle. 0: for every
+  // sample.
   double color_share = 0;
-  double stop_transmittance = 1e-4;  // a ray ends where less light than this gets through
+  double stop_transmittance = 1e-4;  // a ray stops where its transmittance is below this
 
-  // The dial: 1 is exact, 0 the fastest whose pictures still look right.
-  // Throws InputError where it is not in [0, 1].
-  static RenderQuality Of(double dial, const MarchOptions& march, const ProposalOptions& proposal);
+  // The approximations of a quality: 1 is exact, 0 is the fastest that still looks right.
+  // Throws InputError if it is not in [0, 1].
+  static RenderQuality Of(double quality, const MarchOptions& march,
+                          const ProposalOptions& proposal);
 };
 
 }  // namespace nerf

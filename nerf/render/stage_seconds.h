@@ -2,14 +2,13 @@
 
 namespace nerf {
 
-// Where the time of rays goes, each stage by a timer of its own. Of one thread while a tile is
-// under way; of a whole batch divided by the number of threads, so that the stages of a step sum to
-// at most its time.
+// The time of each stage of rays. Within a tile it is that of one thread; for a whole batch it is
+// divided by the number of threads, so that the stages of a step sum to at most its time.
 struct StageSeconds {
-  double sampling = 0;     // where samples stand: the march, or the proposal with its training
-  double encoding = 0;     // reading the field's hash table; in training, scattering its gradients
-  double networks = 0;     // density and colour
-  double compositing = 0;  // the integral along rays, the loss, and their backward pass
+  double sampling = 0;     // ray marching, or the proposal network with its training
+  double encoding = 0;     // the field's hash table, with the scattering of its gradients
+  double networks = 0;     // density and colour networks
+  double compositing = 0;  // volume rendering, the loss, and their backward pass
 
   double Sum() const { return sampling + encoding + networks + compositing; }
   void Add(const StageSeconds& other, double factor = 1) {

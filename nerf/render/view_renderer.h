@@ -7,9 +7,9 @@
 
 namespace nerf {
 
-// What renders the views of a model as it is now: exact at quality 1, by the engine that it was
-// trained with, else a PacketRenderer with RenderQuality::Of(quality). `parts` must outlive it, and
-// not change. Throws InputError where quality is not in [0, 1].
+// The renderer of a quality: the exact one of the configured engine at quality 1, else a
+// PacketRenderer with RenderQuality::Of(quality). `parts` must outlive it and must not change.
+// Throws InputError if quality is not in [0, 1].
 std::shared_ptr<const RayRenderer> MakeRenderer(const ModelParts& parts, double quality = 1);
 
 }  // namespace nerf

@@ -9,7 +9,7 @@
 namespace nerf {
 namespace {
 
-constexpr std::int64_t kRaysWorthAThread = 16;
+constexpr std::int64_t kMinRaysPerThread = 16;
 
 template <class Real>
 kernels::RaySegments<Real> Segments(const torch::autograd::variable_list& v) {
@@ -17,8 +17,8 @@ kernels::RaySegments<Real> Segments(const torch::autograd::variable_list& v) {
           Span<const Real>(v[4]),         Span<const Real>(v[2]), Span<const Real>(v[5])};
 }
 
-// Throws c10::Error with the index of the first ray whose samples do not stand in order with
-// lengths of 0 or more. What is NaN is neither.
+// Throws c10::Error with the index of the first ray whose intervals have a negative length or are
+// out of order, or NaN.
 void CheckOrder(const torch::Tensor& ray_begin, const torch::Tensor& dt, const torch::Tensor& t) {
   const auto begin = Span<const std::int64_t>(ray_begin);
   AT_DISPATCH_FLOATING_TYPES(dt.scalar_type(), "check_order", [&] {
@@ -26,9 +26,9 @@ void CheckOrder(const torch::Tensor& ray_begin, const torch::Tensor& dt, const t
     for (std::size_t r = 0; r + 1 < begin.size(); ++r) {
       for (std::int64_t i = begin[r]; i < begin[r + 1]; ++i) {
         TORCH_CHECK(lengths[i] >= 0, "RenderVolume: ray ", r, ": dt is ", lengths[i], " at sample ",
-                    i, ", want 0 or more");
+                    i, "; it must be 0 or more");
         TORCH_CHECK(i == begin[r] ? !std::isnan(places[i]) : places[i] >= places[i - 1],
-                    "RenderVolume: ray ", r, ": t does not rise at sample ", i);
+                    "RenderVolume: ray ", r, ": t decreases or is NaN at sample ", i);
       }
     }
   });
@@ -49,7 +49,7 @@ struct VolumeRenderingFunction : torch::autograd::Function<VolumeRenderingFuncti
     AT_DISPATCH_FLOATING_TYPES(sigma.scalar_type(), "composite_forward", [&] {
       const kernels::Composited<scalar_t> out = {Span<scalar_t>(rgb), Span<scalar_t>(opacity),
                                                  Span<scalar_t>(depth)};
-      ParallelFor(rays, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+      ParallelFor(rays, kMinRaysPerThread, [&](std::int64_t first, std::int64_t last) {
         kernels::CompositeForward<scalar_t>(Segments<scalar_t>(in), out, first, last);
       });
     });
@@ -73,7 +73,7 @@ struct VolumeRenderingFunction : torch::autograd::Function<VolumeRenderingFuncti
                                                            Span<const scalar_t>(dL_ddepth)};
       const kernels::SegmentGradients<scalar_t> out = {
           Span<scalar_t>(dL_dsigma), Span<scalar_t>(dL_dradiance), Span<scalar_t>(dL_dbackground)};
-      ParallelFor(rays, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+      ParallelFor(rays, kMinRaysPerThread, [&](std::int64_t first, std::int64_t last) {
         kernels::CompositeBackward<scalar_t>(Segments<scalar_t>(in), grad, out, first, last);
       });
     });
@@ -89,7 +89,7 @@ struct WeightsFunction : torch::autograd::Function<WeightsFunction> {
     torch::Tensor weights = torch::empty_like(sigma);
     AT_DISPATCH_FLOATING_TYPES(sigma.scalar_type(), "weights_forward", [&] {
       ParallelFor(
-          ray_begin.size(0) - 1, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+          ray_begin.size(0) - 1, kMinRaysPerThread, [&](std::int64_t first, std::int64_t last) {
             kernels::WeightsForward<scalar_t>(Span<const std::int64_t>(ray_begin),
                                               Span<const scalar_t>(sigma), Span<const scalar_t>(dt),
                                               Span<scalar_t>(weights), first, last);
@@ -105,7 +105,7 @@ struct WeightsFunction : torch::autograd::Function<WeightsFunction> {
     const torch::Tensor dL_dweights = grads[0].contiguous();
     torch::Tensor dL_dsigma = torch::empty_like(in[1]);
     AT_DISPATCH_FLOATING_TYPES(in[1].scalar_type(), "weights_backward", [&] {
-      ParallelFor(in[0].size(0) - 1, kRaysWorthAThread, [&](std::int64_t first, std::int64_t last) {
+      ParallelFor(in[0].size(0) - 1, kMinRaysPerThread, [&](std::int64_t first, std::int64_t last) {
         kernels::WeightsBackward<scalar_t>(Span<const std::int64_t>(in[0]),
                                            Span<const scalar_t>(in[1]), Span<const scalar_t>(in[2]),
                                            Span<const scalar_t>(dL_dweights),
@@ -123,7 +123,7 @@ torch::Tensor RenderWeights(const torch::Tensor& ray_begin, const torch::Tensor&
   TORCH_CHECK(ray_begin.dim() == 1 && ray_begin.scalar_type() == torch::kLong,
               "RenderWeights: ray_begin must be [R+1] int64, got ", ray_begin.sizes());
   TORCH_CHECK(sigma.dim() == 1 && dt.sizes() == sigma.sizes(),
-              "RenderWeights: want sigma [S], dt [S]; got ", sigma.sizes(), dt.sizes());
+              "RenderWeights: expected sigma [S], dt [S]; got ", sigma.sizes(), dt.sizes());
   return WeightsFunction::apply(ray_begin.contiguous(), sigma.contiguous(), dt.contiguous());
 }
 
@@ -140,7 +140,8 @@ VolumeRendering RenderVolume(const torch::Tensor& ray_begin, const torch::Tensor
                   radiance.sizes() == at::IntArrayRef({samples, 3}) &&
                   dt.sizes() == sigma.sizes() && t.sizes() == sigma.sizes() &&
                   background.sizes() == at::IntArrayRef({rays, 3}),
-              "RenderVolume: want sigma [S], radiance [S,3], dt [S], t [S], background [R,3]; got ",
+              "RenderVolume: expected sigma [S], radiance [S,3], dt [S], t [S], background [R,3]; "
+              "got ",
               sigma.sizes(), radiance.sizes(), dt.sizes(), t.sizes(), background.sizes());
   CheckOrder(ray_begin.contiguous(), dt.contiguous(), t.contiguous());
   const auto out = VolumeRenderingFunction::apply(ray_begin.contiguous(), sigma.contiguous(),

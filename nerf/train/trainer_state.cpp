@@ -79,7 +79,7 @@ void Trainer::State::StartBackground() {
       batch.rgb[i] /= gain[3 * batch.photograph[i / 3] + i % 3];
     }
   }
-  model.background->Start(batch);
+  model.background->Initialize(batch);
 }
 
 StepResult Trainer::State::Step() {

@@ -22,7 +22,7 @@ void FitToPhotographs(RenderOutput& out, const TargetBatch& truth, ColorEncoding
   for (std::size_t r = 0; r < truth.photograph.size(); ++r) {
     rays_of[truth.photograph[r]].push_back(r);
   }
-  const std::vector<float> all_through = SeenThrough(out.opacity, truth.rays.background);
+  const std::vector<float> all_through = BackgroundContribution(out.opacity, truth.rays.background);
   for (const auto& [photograph, rays] : rays_of) {
     std::vector<float> rendered, shown, through;
     const auto take = [](std::size_t r, const std::vector<float>& from, std::vector<float>& to) {
@@ -84,7 +84,8 @@ RayBatch Validation::Rays(const Model& model) const {
   const torch::Tensor direction = rows(batch_.rays.direction, 3);
   const RefinedRays refined =
       model.pose_refinement->forward(origin, direction, TensorOf(place, {count}, torch::kLong));
-  const torch::Tensor zoomed = PoseRefinement::Zoomed(direction, rows(axis_, 3), rows(log_f, 1));
+  const torch::Tensor zoomed =
+      PoseRefinement::ScaleFocalLength(direction, rows(axis_, 3), rows(log_f, 1));
   const torch::Tensor is_known = rows(known, 1) > 0.5;
   return WithRefinedRays(batch_.rays, {torch::where(is_known, refined.origin, origin),
                                        torch::where(is_known, refined.direction, zoomed)});

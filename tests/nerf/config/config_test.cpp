@@ -31,7 +31,7 @@ TEST(Config, EveryPresetLoads) {
   for (const auto& [name, text] : BuiltInPresets()) EXPECT_NO_THROW(LoadConfig(name, {})) << name;
 }
 
-TEST(Config, TheBasePresetHoldsEveryKeyWithTheDefaultOfTheCode) {
+TEST(Config, TheBasePresetContainsEveryKeyWithItsDefault) {
   EXPECT_EQ(nlohmann::json::parse(BuiltInPresets().at("base")), JsonFromConfig(Config()));
 }
 
@@ -75,16 +75,16 @@ TEST(Config, AValueOutOfRangeIsNamed) {
   EXPECT_THAT(ErrorOf("base", {"train.target_psnr=-1"}), HasSubstr("train.target_psnr"));
 }
 
-TEST(Config, AValueThatIsNoTextIsRefusedAsAnyOther) {
+TEST(Config, AValueThatIsNotValidUtf8IsRejected) {
   EXPECT_THAT(ErrorOf("base", {"train.steps=\xe9\x01"}), HasSubstr("train.steps"));
 }
 
-TEST(Config, AnEffectIsOnWhereItsBlockIs) {
+TEST(Config, AnEffectIsOnWhereItsBlockIsPresent) {
   EXPECT_FALSE(LoadConfig("base", {}).effects.exposure);
   EXPECT_TRUE(LoadConfig("base", {"effects.exposure={}"}).effects.exposure);
   EXPECT_FALSE(
       LoadConfig("base", {"effects.exposure={}", "effects.exposure=null"}).effects.exposure);
-  // What is written into a run folder comes back, on or off.
+  // A run folder's config.json restores the effect, on or off.
   for (const char* effect : {"effects.exposure={}", "effects.exposure=null"}) {
     const Config config = LoadConfig("base", {effect});
     EXPECT_EQ(JsonFromConfig(ConfigFromJson(JsonFromConfig(config), "test")),
@@ -92,14 +92,14 @@ TEST(Config, AnEffectIsOnWhereItsBlockIs) {
   }
 }
 
-TEST(Config, AnEffectThatDoesNotExistIsNamedWithThoseThatDo) {
+TEST(Config, AnUnknownEffectIsReportedWithTheKnownOnes) {
   EXPECT_THAT(ErrorOf("base", {"effects.exposr={}"}),
               AllOf(HasSubstr("effects.exposr"), HasSubstr("exposure")));
   EXPECT_THAT(ErrorOf("base", {"effects.exposure=true"}),
               HasSubstr("effects.exposure must be an object"));
   EXPECT_THAT(ErrorOf("base", {"effects.exposure={\"stops\": 2}"}),
               HasSubstr("effects.exposure.stops"));
-  // Nothing else may be missing.
+  // Only effects may be null.
   EXPECT_THAT(ErrorOf("base", {"march=null"}), HasSubstr("march must be an object"));
 }
 
@@ -107,7 +107,7 @@ TEST(Config, AnAssignmentWithoutAValueIsExplained) {
   EXPECT_THAT(ErrorOf("base", {"train.steps"}), HasSubstr("block.key=value"));
 }
 
-TEST(Config, AnUnknownPresetListsThoseThereAre) {
+TEST(Config, AnUnknownPresetIsReportedWithTheKnownOnes) {
   EXPECT_THAT(ErrorOf("fsat", {}), AllOf(HasSubstr("fsat"), HasSubstr("balanced")));
 }
 
@@ -131,9 +131,9 @@ TEST(Config, EveryKeyHasHelp) {
   for (const OptionHelp& option : ConfigHelp()) {
     EXPECT_GT(option.help.size(), 5u) << option.key;
     EXPECT_FALSE(option.range.empty()) << option.key;
-    EXPECT_TRUE(described.insert(option.key).second) << option.key << " is there twice";
+    EXPECT_TRUE(described.insert(option.key).second) << option.key << " is described twice";
   }
-  // Every key that JSON has, with every effect on, and no other.
+  // Exactly the keys of the JSON with every effect on.
   Config config;
   for (const EffectDescriptor* effect : AllEffects()) config = WithEffect(config, *effect, true);
   std::set<std::string> keys;
@@ -148,11 +148,11 @@ TEST(Config, EveryKeyHasHelp) {
   EXPECT_EQ(described, keys);
 }
 
-TEST(Config, TheTableInTheDocumentationIsThatOfTheProgram) {
+TEST(Config, TheDocumentationContainsTheHelpTable) {
   EXPECT_THAT(ReadWholeFile(NERF_DOCUMENTATION "/configuration.md"), HasSubstr(ConfigHelpTable()));
 }
 
-TEST(Config, EffectsMayBeCalledByTheNamesThatTheyHadAVersionAgo) {
+TEST(Config, OldEffectNamesAreAccepted) {
   const Config config = LoadConfig(
       "base", {"effects.view=null", "effects.poses={\"rate\": 0.5}", "effects.footprint={}"});
   EXPECT_FALSE(config.effects.view_dependence);
@@ -161,21 +161,21 @@ TEST(Config, EffectsMayBeCalledByTheNamesThatTheyHadAVersionAgo) {
   EXPECT_TRUE(config.effects.anti_aliasing);
   EXPECT_EQ(NamedEffects("base", {"effects.depth={}"}),
             (std::set<std::string>{"depth_supervision"}));
-  // As a checkpoint of that version has them.
+  // As in a checkpoint of the previous version.
   const Config old =
       ConfigFromJson({{"effects", {{"view", nullptr}, {"depth", {{"share", 0.2}}}}}}, "test");
   EXPECT_FALSE(old.effects.view_dependence);
   EXPECT_EQ(old.effects.depth_supervision->share, 0.2);
 }
 
-TEST(Config, AValueThatIsNoEnumeratorListsThoseThereAre) {
+TEST(Config, AnUnknownEnumeratorIsReportedWithTheKnownOnes) {
   EXPECT_THAT(
       ErrorOf("base", {"march.sampler=grid"}),
       AllOf(HasSubstr("march.sampler"), HasSubstr("grid"), HasSubstr("auto, occupancy, proposal")));
   EXPECT_THAT(ErrorOf("base", {"train.engine=gpu"}), HasSubstr("fused, libtorch"));
 }
 
-TEST(Config, EveryNumberIsHeldToItsRange) {
+TEST(Config, EveryNumberIsCheckedAgainstItsRange) {
   EXPECT_THAT(ErrorOf("base", {"optimizer.beta1=1"}),
               HasSubstr("optimizer.beta1 is 1; use 0 to 0.9999"));
   EXPECT_THAT(ErrorOf("base", {"proposal.encoding.levels=0"}),
@@ -187,7 +187,7 @@ TEST(Config, EveryNumberIsHeldToItsRange) {
   EXPECT_THAT(ErrorOf("base", {"march.near_distance=200"}), HasSubstr("near < far"));
 }
 
-TEST(Config, JsonComesBack) {
+TEST(Config, SurvivesARoundTripThroughJson) {
   const Config config = LoadConfig("accurate", {"train.seed=18446744073709551615"});
   EXPECT_EQ(JsonFromConfig(ConfigFromJson(JsonFromConfig(config), "test")), JsonFromConfig(config));
 }

@@ -18,7 +18,7 @@ struct Rays {
   std::vector<float> direction, rgb;
 };
 
-// The direction at an angle from the zenith and a longitude, parts of their ranges.
+// The direction at a polar angle (down) and a longitude (around), each as a fraction of its range.
 std::array<float, 3> DirectionAt(double down, double around) {
   const double polar = down * std::numbers::pi, longitude = (2 * around - 1) * std::numbers::pi;
   return {static_cast<float>(std::sin(polar) * std::cos(longitude)),
@@ -26,9 +26,9 @@ std::array<float, 3> DirectionAt(double down, double around) {
           static_cast<float>(std::cos(polar))};
 }
 
-// What a photograph shows of a belt about the horizon, four rays to each texel of a map and more.
+// Adds the rays of a photograph of a belt of polar angles: at least four for each texel of a map.
 void Show(std::int64_t photograph, double from, double to, int rows,
-          const std::function<float(double down, double around)>& shade, Rays& rays) {
+          const std::function<float(double down, double around)>& grey, Rays& rays) {
   const int down_steps = static_cast<int>(2 * rows * (to - from)), around_steps = 4 * rows;
   for (int i = 0; i < down_steps; ++i) {
     for (int k = 0; k < around_steps; ++k) {
@@ -37,30 +37,31 @@ void Show(std::int64_t photograph, double from, double to, int rows,
       const auto direction = DirectionAt(down, around);
       rays.photograph.push_back(photograph);
       rays.direction.insert(rays.direction.end(), direction.begin(), direction.end());
-      rays.rgb.insert(rays.rgb.end(), 3, shade(down, around));
+      rays.rgb.insert(rays.rgb.end(), 3, grey(down, around));
     }
   }
 }
 
-float SeenAt(const BackgroundMap& map, double down, double around) {
+float RadianceAt(const BackgroundMap& map, double down, double around) {
   std::vector<float> rgb(3);
   map.Radiance(DirectionAt(down, around), rgb);
   return rgb[0];
 }
 
-BackgroundMap Started(const Rays& rays, int rows, ColorEncoding encoding = ColorEncoding::kSrgb) {
+BackgroundMap Initialized(const Rays& rays, int rows,
+                          ColorEncoding encoding = ColorEncoding::kSrgb) {
   BackgroundMap map{rows, encoding, {}};
-  StartFromPhotographs(rays.photograph, rays.direction, rays.rgb, map);
+  InitializeBackground(rays.photograph, rays.direction, rays.rgb, map);
   return map;
 }
 
 float Bright(double, double) { return 0.7f; }
 float Dark(double, double) { return 0.1f; }
 
-TEST(BackgroundStart, IsWhatMostPhotographsAgreeOn) {
+TEST(InitializeBackground, TakesTheColourThatMostPhotographsAgreeOn) {
   for (const int rows : {8, 64}) {
     for (const auto encoding : {ColorEncoding::kSrgb, ColorEncoding::kLinear}) {
-      // Who passes by is another in each of the others.
+      // Each of the other photographs shows another colour: a passer-by.
       Rays rays;
       for (const int sky : {0, 3}) Show(sky, 0, 1, rows, Bright, rays);
       for (const int other : {1, 2, 4}) {
@@ -68,38 +69,40 @@ TEST(BackgroundStart, IsWhatMostPhotographsAgreeOn) {
             other, 0, 1, rows, [&](double, double) { return 0.11f * static_cast<float>(other); },
             rays);
       }
-      const BackgroundMap map = Started(rays, rows, encoding);
-      for (const double down : {0.2, 0.5, 0.8}) EXPECT_NEAR(SeenAt(map, down, 0.3), 0.7f, 1e-3f);
+      const BackgroundMap map = Initialized(rays, rows, encoding);
+      for (const double down : {0.2, 0.5, 0.8}) {
+        EXPECT_NEAR(RadianceAt(map, down, 0.3), 0.7f, 1e-3f);
+      }
     }
   }
 }
 
-TEST(BackgroundStart, HoldsWhatIsSmallerThanTexelsOfACoarseMap) {
+TEST(InitializeBackground, ShowsDetailThatIsFinerThanTheCoarseMap) {
   const auto clouds = [](double, double around) {
     return std::fmod(around * 32, 1.0) < 0.5 ? 0.4f : 0.6f;
   };
   Rays rays;
   for (const int photograph : {0, 1}) Show(photograph, 0.3, 0.7, 64, clouds, rays);
-  const BackgroundMap map = Started(rays, 64);
+  const BackgroundMap map = Initialized(rays, 64);
   for (const double cloud : {3.0, 11.0, 20.0}) {
-    EXPECT_NEAR(SeenAt(map, 0.5, (cloud + 0.25) / 32), 0.4f, 0.02f);
-    EXPECT_NEAR(SeenAt(map, 0.5, (cloud + 0.75) / 32), 0.6f, 0.02f);
+    EXPECT_NEAR(RadianceAt(map, 0.5, (cloud + 0.25) / 32), 0.4f, 0.02f);
+    EXPECT_NEAR(RadianceAt(map, 0.5, (cloud + 0.75) / 32), 0.6f, 0.02f);
   }
 }
 
-// Where one photograph alone looks, something before the sky would be painted on it.
-TEST(BackgroundStart, GoesOnWithTheSkyWhereOnePhotographAloneLooks) {
+// What a single photograph shows may be an object in front of the sky.
+TEST(InitializeBackground, ExtrapolatesTheSkyWhereOnlyOnePhotographLooks) {
   for (const int rows : {16, 64}) {
     Rays rays;
     for (const int photograph : {0, 1}) Show(photograph, 0, 0.5, rows, Bright, rays);
     Show(2, 0.5, 0.7, rows, Dark, rays);
-    const BackgroundMap map = Started(rays, rows);
-    for (const double down : {0.6, 0.9}) EXPECT_NEAR(SeenAt(map, down, 0.3), 0.7f, 1e-3f);
+    const BackgroundMap map = Initialized(rays, rows);
+    for (const double down : {0.6, 0.9}) EXPECT_NEAR(RadianceAt(map, down, 0.3), 0.7f, 1e-3f);
   }
 }
 
-// Each texel of the finer map is seen by one photograph alone, of the coarser one by both.
-TEST(BackgroundStart, GoesOnWithACoarserMapAsThatIs) {
+// Each texel of the finer map is seen by one photograph only, of the coarser one by both.
+TEST(InitializeBackground, InterpolatesTheCoarserMapWhereNoneAgree) {
   const auto smooth = [](double down, double around) {
     return static_cast<float>(0.5 + 0.2 * std::sin(2 * std::numbers::pi * around) +
                               0.2 * (down - 0.5));
@@ -107,7 +110,7 @@ TEST(BackgroundStart, GoesOnWithACoarserMapAsThatIs) {
   for (const int rows : {17, 32, 33}) {
     Rays rays;
     for (const int photograph : {0, 1}) Show(photograph, 0.2, 0.8, 64, smooth, rays);
-    const BackgroundMap fine = Started(rays, rows), coarse = Started(rays, rows / 2);
+    const BackgroundMap fine = Initialized(rays, rows), coarse = Initialized(rays, rows / 2);
     Rays apart = rays;
     for (std::size_t r = 0; r < apart.photograph.size(); ++r) {
       const auto texels =
@@ -115,18 +118,18 @@ TEST(BackgroundStart, GoesOnWithACoarserMapAsThatIs) {
       const auto nearest = std::ranges::max_element(texels.weight) - texels.weight.begin();
       apart.photograph[r] = texels.index[nearest] % 2;
     }
-    const BackgroundMap filled = Started(apart, rows);
+    const BackgroundMap filled = Initialized(apart, rows);
     for (const double down : {0.35, 0.5, 0.65}) {
       for (const double around : {0.1, 0.4, 0.72}) {
-        EXPECT_NEAR(SeenAt(fine, down, around), smooth(down, around), 0.02f);
-        EXPECT_NEAR(SeenAt(filled, down, around), smooth(down, around), 0.04f);
-        EXPECT_NEAR(SeenAt(filled, down, around), SeenAt(coarse, down, around), 0.03f);
+        EXPECT_NEAR(RadianceAt(fine, down, around), smooth(down, around), 0.02f);
+        EXPECT_NEAR(RadianceAt(filled, down, around), smooth(down, around), 0.04f);
+        EXPECT_NEAR(RadianceAt(filled, down, around), RadianceAt(coarse, down, around), 0.03f);
       }
     }
   }
 }
 
-TEST(BackgroundStart, IsTheMedianWhereExposuresDiffer) {
+TEST(InitializeBackground, TakesTheMedianWhereExposuresDiffer) {
   Rays rays;
   for (const int photograph : {0, 1, 2}) {
     Show(
@@ -137,11 +140,11 @@ TEST(BackgroundStart, IsTheMedianWhereExposuresDiffer) {
         },
         rays);
   }
-  EXPECT_NEAR(SeenAt(Started(rays, 64), 0.4, 0.6), 0.5f, 1e-3f);
-  EXPECT_NEAR(SeenAt(Started(rays, 16), 0.4, 0.6), 0.5f, 1e-3f);
+  EXPECT_NEAR(RadianceAt(Initialized(rays, 64), 0.4, 0.6), 0.5f, 1e-3f);
+  EXPECT_NEAR(RadianceAt(Initialized(rays, 16), 0.4, 0.6), 0.5f, 1e-3f);
 }
 
-TEST(BackgroundStart, DoesNotDependOnTheUnitOfLinearLight) {
+TEST(InitializeBackground, DoesNotDependOnTheUnitOfLinearLight) {
   for (const float unit : {0.1f, 1000.0f}) {
     Rays rays;
     for (const int sky : {0, 1}) {
@@ -153,25 +156,25 @@ TEST(BackgroundStart, DoesNotDependOnTheUnitOfLinearLight) {
           other, 0, 1, 16, [&](double, double) { return 0.1f * unit * static_cast<float>(other); },
           rays);
     }
-    EXPECT_NEAR(SeenAt(Started(rays, 16, ColorEncoding::kLinear), 0.4, 0.6), 0.7f * unit,
+    EXPECT_NEAR(RadianceAt(Initialized(rays, 16, ColorEncoding::kLinear), 0.4, 0.6), 0.7f * unit,
                 1e-3f * unit);
   }
 }
 
-TEST(BackgroundStart, StaysFiniteOfBlackAndWhite) {
-  for (const float shade : {0.0f, 1.0f}) {
+TEST(InitializeBackground, StaysFiniteForBlackAndWhite) {
+  for (const float grey : {0.0f, 1.0f}) {
     Rays rays;
     for (const int photograph : {0, 1}) {
       Show(
-          photograph, 0, 1, 8, [&](double, double) { return shade; }, rays);
+          photograph, 0, 1, 8, [&](double, double) { return grey; }, rays);
     }
-    for (const float raw : Started(rays, 8).raw) EXPECT_LT(std::fabs(raw), 10);
+    for (const float raw : Initialized(rays, 8).raw) EXPECT_LT(std::fabs(raw), 10);
   }
 }
 
-TEST(BackgroundStart, StaysGreyWhereNothingIsShownAtAll) {
+TEST(InitializeBackground, IsGreyWithoutAnyRays) {
   for (const int rows : {8, 64}) {
-    EXPECT_EQ(Started({}, rows).raw, std::vector<float>(6 * rows * rows, 0.0f));
+    EXPECT_EQ(Initialized({}, rows).raw, std::vector<float>(6 * rows * rows, 0.0f));
   }
 }
 

@@ -14,7 +14,7 @@ struct Extent {
   int count = 0, top = 1 << 20, bottom = -1;
 };
 
-// Where pixels are blue in some columns of a picture; letters and lines are grey.
+// The blue pixels (bars) in a range of columns; text and lines are grey.
 Extent Blue(const Image& image, int left, int right) {
   Extent extent;
   for (int y = 0; y < image.height; ++y) {
@@ -33,7 +33,7 @@ TEST(InspectionPicture, HasABarForEachPhotographUpOrDownFromTheMean) {
   Inspection inspection;
   inspection.stops = {1, -1};
   const Image image = PictureOf(inspection);
-  // The left half of the left side, and its right half.
+  // The left and the right half of the left plot.
   const Extent up = Blue(image, 0, 345), down = Blue(image, 345, 640);
   EXPECT_GT(up.count, 1000);
   EXPECT_LE(up.bottom, down.top);
@@ -42,7 +42,7 @@ TEST(InspectionPicture, HasABarForEachPhotographUpOrDownFromTheMean) {
   EXPECT_NEAR(Blue(PictureOf(inspection), 345, 640).count, down.count / 2, 0.02 * down.count);
 }
 
-TEST(InspectionPicture, ShowsWhatIsLeftOverHigherWhereItIsMore) {
+TEST(InspectionPicture, DrawsLargerResidualsHigher) {
   Inspection inspection;
   inspection.residuals = {{2.5, 100, {0.1, 0.2, 0.3}}, {47.5, 100, {1, 2, 3}}};
   const Image image = PictureOf(inspection);
@@ -53,7 +53,7 @@ TEST(InspectionPicture, ShowsWhatIsLeftOverHigherWhereItIsMore) {
   EXPECT_GT(high.bottom - high.top, 5 * (low.bottom - low.top));
 }
 
-TEST(InspectionPicture, OfNothingDrawsNothingButWords) {
+TEST(InspectionPicture, WithoutDataDrawsOnlyText) {
   const Image image = PictureOf({});
   EXPECT_EQ(Blue(image, 0, image.width).count, 0);
   const auto dark = std::ranges::count_if(image.pixels, [](float v) { return v < 0.5f; });

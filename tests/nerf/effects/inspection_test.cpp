@@ -39,8 +39,8 @@ struct Case {
 
 class EachScenario : public testing::TestWithParam<Case> {};
 
-// Of the effects that Inspect judges, those that a sample calls for and no other.
-TEST_P(EachScenario, IsJudgedRightly) {
+// Inspect turns on the effects that a capture calls for, and no others.
+TEST_P(EachScenario, IsJudgedCorrectly) {
   const test::ScratchFolder folder;
   synthetic::WriteSample(folder.path(), Small(GetParam().scenario));
   PosedImages posed =
@@ -98,7 +98,7 @@ TEST(Inspect, FindsTheExposuresThatASampleWasTakenWith) {
   }
 }
 
-TEST(Inspect, RaysBeginBeforeWhateverACameraSees) {
+TEST(Inspect, PutsTheNearPlaneInFrontOfEverySurface) {
   const test::ScratchFolder folder;
   synthetic::WriteSample(folder.path(), Small(Scenario::kNothing));
   const PosedImages posed =
@@ -118,10 +118,10 @@ TEST(Inspect, RaysBeginBeforeWhateverACameraSees) {
     EXPECT_EQ(verdict.assignment.find("march.near_distance=0."), 0u);
     return;
   }
-  FAIL() << "no verdict on where rays begin";
+  FAIL() << "no verdict on the near plane";
 }
 
-TEST(Inspect, WithoutALearnedBackgroundContractedSpaceHoldsWhatIsFar) {
+TEST(Inspect, WithoutALearnedBackgroundKeepsDistantPointsInContractedSpace) {
   const test::ScratchFolder folder;
   synthetic::WriteSample(folder.path(), Small(Scenario::kBackground));
   const PosedImages posed =
@@ -148,7 +148,7 @@ TEST(Inspect, WithoutSparsePointsOnlyFactsAreDecided) {
   EXPECT_FALSE(decided.at("exposure"));
 }
 
-TEST(Verdict, HasConfidenceFarFromItsThreshold) {
+TEST(Verdict, IsMoreConclusiveFurtherFromItsThreshold) {
   Verdict verdict;
   verdict.decided = true;
   verdict.threshold = 0.1;

@@ -9,18 +9,16 @@
 namespace nerf {
 namespace {
 
-TEST(MasksEffect, WithoutAMeaningThatIsKnownIsRefused) {
+TEST(MasksEffect, RejectsAnUnknownMeaning) {
   EXPECT_THAT(
       test::InputErrorOf([] { LoadConfig("base", {R"(effects.masks={"meaning": "sky"})"}); }),
       testing::AllOf(testing::HasSubstr("effects.masks.meaning"), testing::HasSubstr("sky"),
                      testing::HasSubstr("ignore, empty")));
 }
 
-TEST(MasksEffect, MeansNothingToPhotographsWhereItIsOff) {
-  EXPECT_EQ(MeaningOf(std::nullopt), std::nullopt);
-}
+TEST(MasksEffect, HasNoMeaningWhereItIsOff) { EXPECT_EQ(MeaningOf(std::nullopt), std::nullopt); }
 
-TEST(MasksEffect, MeansWhatItIsCalled) {
+TEST(MasksEffect, HasTheConfiguredMeaning) {
   EXPECT_EQ(MeaningOf(MaskOptions{MaskMeaning::kIgnore}), MaskMeaning::kIgnore);
   EXPECT_EQ(MeaningOf(MaskOptions{MaskMeaning::kEmpty}), MaskMeaning::kEmpty);
   EXPECT_EQ(MeaningOf(MaskOptions()), MaskMeaning::kIgnore);  // as COLMAP's masks

@@ -9,8 +9,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Cameras on a line, at these distances before points about the origin that all of them see.
-PosedImages CamerasBefore(const std::vector<double>& distances) {
+// Cameras on a line at these distances from points near the origin, which all of them see.
+PosedImages CamerasAtDistances(const std::vector<double>& distances) {
   PosedImages posed;
   posed.cameras = {PinholeFromFov(640, 480, 0.9)};
   for (const double distance : distances) {
@@ -37,8 +37,8 @@ void MovePixels(PosedImages& posed, const Vector2d& by) {
   }
 }
 
-TEST(PoseRefinementVerdict, IsTheDistanceBetweenWhereAPointIsSeenAndWhereItShouldBe) {
-  PosedImages posed = CamerasBefore({2, 2, 2, 2});
+TEST(PoseRefinementVerdict, IsTheReprojectionError) {
+  PosedImages posed = CamerasAtDistances({2, 2, 2, 2});
   EXPECT_NEAR(JudgePoseRefinement(posed).figure, 0, 1e-9);
   MovePixels(posed, {0.6, 0.8});
   EXPECT_NEAR(JudgePoseRefinement(posed).figure, 1, 1e-9);
@@ -49,23 +49,23 @@ TEST(PoseRefinementVerdict, IsTheDistanceBetweenWhereAPointIsSeenAndWhereItShoul
   EXPECT_EQ(JudgePoseRefinement(posed).assignment, "effects.pose_refinement={}");
 }
 
-TEST(PoseRefinementVerdict, IsNotBentByAFewSightingsOfSomethingElse) {
-  PosedImages posed = CamerasBefore({2, 2, 2, 2});
+TEST(PoseRefinementVerdict, IsRobustToAFewOutliers) {
+  PosedImages posed = CamerasAtDistances({2, 2, 2, 2});
   for (std::size_t p = 0; p < 20; ++p) posed.points[p].track[0].pixel += Vector2d(90, 0);
   EXPECT_NEAR(JudgePoseRefinement(posed).figure, 0, 1e-9);
 }
 
 TEST(AntiAliasingVerdict, IsTheRatioOfDistances) {
-  EXPECT_NEAR(JudgeAntiAliasing(CamerasBefore({2, 2, 2, 2})).figure, 1, 1e-9);
-  const Verdict far = JudgeAntiAliasing(CamerasBefore({2, 8, 2, 8, 2, 8}));
+  EXPECT_NEAR(JudgeAntiAliasing(CamerasAtDistances({2, 2, 2, 2})).figure, 1, 1e-9);
+  const Verdict far = JudgeAntiAliasing(CamerasAtDistances({2, 8, 2, 8, 2, 8}));
   EXPECT_NEAR(far.figure, 4, 0.1);
   EXPECT_TRUE(far.on);
   EXPECT_EQ(far.assignment, "effects.anti_aliasing={}");
 }
 
-// A lens of four times the focal length makes up for four times the distance.
-TEST(AntiAliasingVerdict, CountsTheFocalLength) {
-  PosedImages posed = CamerasBefore({2, 8, 2, 8, 2, 8});
+// Four times the focal length compensates for four times the distance.
+TEST(AntiAliasingVerdict, TakesTheFocalLengthIntoAccount) {
+  PosedImages posed = CamerasAtDistances({2, 8, 2, 8, 2, 8});
   Camera longer = posed.cameras[0];
   for (int i = 0; i < 2; ++i) longer.params[i] *= 4;
   posed.cameras.push_back(longer);
@@ -74,8 +74,8 @@ TEST(AntiAliasingVerdict, CountsTheFocalLength) {
   EXPECT_FALSE(JudgeAntiAliasing(posed).on);
 }
 
-TEST(GeometryVerdicts, ThatNeedTracksAreUndecidedWithoutThem) {
-  PosedImages posed = CamerasBefore({2, 2, 2, 2});
+TEST(GeometryVerdicts, AreUndecidedWithoutTracks) {
+  PosedImages posed = CamerasAtDistances({2, 2, 2, 2});
   for (auto& point : posed.points) point.track.clear();
   for (const Verdict& verdict : {JudgePoseRefinement(posed), JudgeAntiAliasing(posed)}) {
     EXPECT_FALSE(verdict.decided);

@@ -30,7 +30,7 @@ std::shared_ptr<Background> SomeBackground(ColorEncoding encoding) {
   return background;
 }
 
-// Directions everywhere, the poles and the seam of longitudes among them.
+// Directions all over the sphere, including the poles and the seam of longitude.
 std::vector<float> Directions() {
   std::vector<float> directions = {0, 0, 1, 0, 0, -1, -1, 0, 0, -1, -1e-7f, 0, -1, 1e-7f, 0};
   for (int i = 0; i < 40; ++i) {
@@ -41,7 +41,7 @@ std::vector<float> Directions() {
   return directions;
 }
 
-TEST(BackgroundMap, WeighsFourTexelsThatSumToOne) {
+TEST(BackgroundMap, InterpolatesFourTexelsWithWeightsThatSumToOne) {
   const std::vector<float> directions = Directions();
   for (std::size_t i = 0; i < directions.size(); i += 3) {
     const auto texels =
@@ -64,7 +64,7 @@ TEST(BackgroundMap, HasNoSeam) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(rgb[c], rgb[3 + c], 1e-5);
 }
 
-TEST(Background, IsTheMap) {
+TEST(Background, EqualsItsMap) {
   for (const auto encoding : {ColorEncoding::kSrgb, ColorEncoding::kLinear}) {
     const auto background = SomeBackground(encoding);
     const std::vector<float> directions = Directions();
@@ -91,7 +91,7 @@ TEST(Background, GradientsMatchCentralDifferences) {
       1e-7);
 }
 
-TEST(Background, MeansTheSameInBothEngines) {
+TEST(Background, IsTheSameInBothEngines) {
   for (const auto encoding : {ColorEncoding::kSrgb, ColorEncoding::kLinear}) {
     test::TwoEngines e;
     e.color = encoding;
@@ -101,7 +101,7 @@ TEST(Background, MeansTheSameInBothEngines) {
   }
 }
 
-TEST(Background, OfTheSameColourEverywhereIsThatBackground) {
+TEST(Background, OfOneColourEqualsAFixedBackground) {
   test::TwoEngines plain, learned;
   plain.Make(30);
   std::ranges::fill(plain.batch.rays.background, 0.5f);
@@ -111,8 +111,8 @@ TEST(Background, OfTheSameColourEverywhereIsThatBackground) {
             plain.fused->Render(plain.batch.rays).rgb);
 }
 
-// A ball before a sky that differs in each direction and is infinitely far away.
-TEST(Background, IsWorthADecibelAndMoreUnderASky) {
+// A ball in front of a sky at infinity that differs by direction.
+TEST(Background, GainsADecibelUnderASky) {
   const auto seen = [](const Vector3f& origin, const Vector3f& direction) -> Vector4f {
     const float middle = -origin.dot(direction);
     const Vector3f nearest = origin + middle * direction;
@@ -134,7 +134,7 @@ TEST(Background, IsWorthADecibelAndMoreUnderASky) {
   };
   const double without = psnr("null"), with = psnr("{}");
   EXPECT_GT(with, without + 1);
-  // The quick renderer sees the same sky.
+  // The renderer at lower quality shows the same sky.
   RayBatch up;
   up.Resize(1);
   up.origin = {0, 0, 1};
@@ -145,7 +145,7 @@ TEST(Background, IsWorthADecibelAndMoreUnderASky) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(quick[c], exact[c], 0.1);
 }
 
-TEST(Background, IsRefusedForPhotographsWithAlpha) {
+TEST(Background, IsRejectedForPhotographsWithAlpha) {
   SceneFacts scene;
   scene.has_alpha = true;
   const Config config = LoadConfig("base", {"effects.background={}"});

@@ -31,14 +31,14 @@ std::shared_ptr<Exposure> SomeExposure(ColorEncoding encoding) {
 
 torch::Tensor Photographs(std::vector<std::int64_t> index) { return torch::tensor(index); }
 
-TEST(Exposure, OfGainOneChangesNoBit) {
+TEST(Exposure, WithGainOneChangesNoBit) {
   Exposure exposure(3, ColorEncoding::kSrgb);
   torch::manual_seed(1);
   const torch::Tensor rgb = torch::rand({5, 3}), target = torch::rand({5, 3});
   EXPECT_TRUE(exposure.forward(rgb, Photographs({0, 1, 2, 1, 0}), target).equal(rgb));
 }
 
-TEST(Exposure, OfAllPhotographsTogetherChangesNothing) {
+TEST(Exposure, IgnoresTheMeanOfTheLogGains) {
   const auto exposure = SomeExposure(ColorEncoding::kLinear);
   const torch::NoGradGuard no_grad;
   const torch::Tensor before = exposure->Gains().clone();
@@ -47,26 +47,26 @@ TEST(Exposure, OfAllPhotographsTogetherChangesNothing) {
   EXPECT_LT((exposure->Gains() - before).abs().max().item<double>(), 1e-6);
 }
 
-TEST(Exposure, OfAWhitePixelIsNotKnownBeyondTheEndOfItsScale) {
+TEST(Exposure, AllowsBrighterColoursAtClippedPixels) {
   const auto exposure = SomeExposure(ColorEncoding::kSrgb);
   const torch::Tensor white = torch::ones({1, 3}), bright = torch::full({1, 3}, 9.0);
   EXPECT_TRUE(exposure->forward(bright, Photographs({0}), white).equal(white));
-  // Not so for linear radiance, which has no end.
+  // Not for linear radiance, which is never clipped.
   const auto linear = SomeExposure(ColorEncoding::kLinear);
   EXPECT_GT((linear->forward(bright, Photographs({0}), white) - white).abs().min().item<double>(),
             1);
 }
 
-TEST(Exposure, StartsAsStopsOfLightSay) {
+TEST(Exposure, IsInitializedFromStops) {
   const std::vector<double> stops = {3, 1, 2};
   Exposure linear(3, ColorEncoding::kLinear);
-  linear.Start(stops);
+  linear.Initialize(stops);
   const torch::NoGradGuard no_grad;
   EXPECT_NEAR(linear.Gains()[0][0].item<double>(), 2, 1e-6);
   EXPECT_NEAR(linear.Gains()[1][1].item<double>(), 0.5, 1e-6);
   EXPECT_NEAR(linear.Gains()[2][2].item<double>(), 1, 1e-6);
   Exposure encoded(3, ColorEncoding::kSrgb);
-  encoded.Start(stops);
+  encoded.Initialize(stops);
   EXPECT_NEAR(encoded.Gains()[0][0].item<double>(), std::pow(2.0, 1 / 2.2), 1e-6);
 }
 
@@ -84,13 +84,13 @@ TEST(Exposure, GradientsMatchCentralDifferences) {
   test::ExpectGradientMatchesCentralDifferences(loss, rgb, 1e-6, 1e-8);
 }
 
-TEST(Exposure, MeansTheSameInBothEngines) {
+TEST(Exposure, IsTheSameInBothEngines) {
   for (const auto encoding : {ColorEncoding::kSrgb, ColorEncoding::kLinear}) {
     test::TwoEngines e;
     e.color = encoding;
     e.exposure = SomeExposure(encoding);
     e.Make(50);
-    for (int i = 0; i < 30; ++i) e.batch.rgb[i] = 1;  // white to the end of the scale
+    for (int i = 0; i < 30; ++i) e.batch.rgb[i] = 1;  // clipped
     e.ExpectTheSame();
   }
 }
@@ -99,19 +99,19 @@ TEST(FitGains, FindsTheGainsOfAPhotograph) {
   const std::vector<float> rendered = {0.1f, 0.2f, 0.3f, 0.5f, 0.4f, 0.6f, 0.9f, 0.9f, 0.9f};
   std::vector<float> shown = rendered;
   ApplyGains({1.3f, 0.7f, 1.0f}, {}, shown);
-  shown[6] = 1;  // 1.17, and white is no more than 1
+  shown[6] = 1;  // 1.17, clipped
   const auto gains = FitGains(rendered, shown, {}, ColorEncoding::kSrgb);
   EXPECT_NEAR(gains[0], 1.3, 1e-6);
   EXPECT_NEAR(gains[1], 0.7, 1e-6);
   EXPECT_NEAR(gains[2], 1.0, 1e-6);
 }
 
-// What is laid under a photograph that is cut out stays as it is, whatever the exposure.
-TEST(Exposure, LeavesTheBackgroundOfACutOutAlone) {
+// A fixed background, onto which photographs with alpha are composited, has no exposure.
+TEST(Exposure, DoesNotApplyToAFixedBackground) {
   test::TwoEngines e;
   e.exposure = SomeExposure(ColorEncoding::kSrgb);
   e.Make(50);
-  e.grid->KeepVisible([](const Vector3f&, float) { return false; });  // nothing before it
+  e.grid->KeepVisible([](const Vector3f&, float) { return false; });  // nothing in front of it
   e.batch.rgb = e.batch.rays.background;
   for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
     EXPECT_LT((e.*engine)->AccumulateGradients(e.batch).squared_error, 1e-12);
@@ -120,22 +120,22 @@ TEST(Exposure, LeavesTheBackgroundOfACutOutAlone) {
   }
 }
 
-TEST(FitGains, LeavesWhatIsSeenThroughTheSceneAlone) {
+TEST(FitGains, DoNotApplyToTheBackgroundContribution) {
   const std::vector<float> opacity = {1.0f, 0.5f, 0.0f}, white = {1, 1, 1};
-  const std::vector<float> through = SeenThrough(opacity, white);
-  EXPECT_EQ(through, (std::vector<float>{0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 1, 1}));
+  const std::vector<float> background = BackgroundContribution(opacity, white);
+  EXPECT_EQ(background, (std::vector<float>{0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 1, 1}));
   const std::vector<float> rendered = {0.2f, 0.3f, 0.4f, 0.7f, 0.6f, 0.8f, 1, 1, 1};
   std::vector<float> shown = rendered;
-  ApplyGains({1.5f, 1.2f, 0.5f}, through, shown);
+  ApplyGains({1.5f, 1.2f, 0.5f}, background, shown);
   EXPECT_EQ(std::vector<float>(shown.begin() + 6, shown.end()), white);
   EXPECT_NEAR(shown[3], 1.5 * 0.2 + 0.5, 1e-6);
-  const auto gains = FitGains(rendered, shown, through, ColorEncoding::kSrgb);
+  const auto gains = FitGains(rendered, shown, background, ColorEncoding::kSrgb);
   EXPECT_NEAR(gains[0], 1.5, 1e-5);
   EXPECT_NEAR(gains[1], 1.2, 1e-5);
   EXPECT_NEAR(gains[2], 0.5, 1e-5);
 }
 
-TEST(FitGains, OfNothingIsOne) {
+TEST(FitGains, AreOneWithoutUsablePixels) {
   const std::vector<float> black(6, 0.0f), white(6, 1.0f);
   const std::array<float, 3> one = {1, 1, 1};
   EXPECT_EQ(FitGains(black, white, {}, ColorEncoding::kSrgb), one);
@@ -143,16 +143,16 @@ TEST(FitGains, OfNothingIsOne) {
   EXPECT_EQ(FitGains({}, {}, {}, ColorEncoding::kLinear), one);
 }
 
-// A ball with a pattern before surroundings that differ in each direction, photographed with
-// exposures up to a stop apart.
-TEST(Exposure, IsWorthADecibelAndMoreWherePhotographsDifferInIt) {
+// A textured ball in front of surroundings that differ by direction, photographed with exposures up
+// to a stop apart.
+TEST(Exposure, GainsADecibelWherePhotographsDifferInExposure) {
   int photograph = 0;
   std::vector<float> gains;
   Vector3f last = Vector3f::Zero();
   const auto seen = [&](const Vector3f& origin, const Vector3f& direction) -> Vector4f {
     if (origin != last) {
       last = origin;
-      // Held-out photographs, every fourth, are as the mean of the others.
+      // Held-out photographs, every fourth, have the mean exposure of the others.
       const bool out = gains.size() % 4 == 0;
       gains.push_back(out ? 1.0f
                           : std::exp(0.35f * std::sin(2.4f * static_cast<float>(photograph))));
@@ -177,7 +177,7 @@ TEST(Exposure, IsWorthADecibelAndMoreWherePhotographsDifferInIt) {
   EXPECT_GT(psnr("{}"), psnr("null") + 1);
 }
 
-TEST(Exposure, OfAPhotographIsAskedForByItsName) {
+TEST(Exposure, OfAPhotographIsFoundByName) {
   const Config config = LoadConfig("base", {"effects.exposure={}", "encoding.log2_table_size=8"});
   SceneFacts scene;
   scene.photographs = {"a.png", "b.png"};

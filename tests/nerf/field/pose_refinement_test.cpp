@@ -38,8 +38,8 @@ std::vector<CameraPlace> Ring(int count, int lenses = 1) {
   return places;
 }
 
-// Some refinement, of every photograph and lens.
-void Disturb(PoseRefinement& poses, double size) {
+// Sets a random refinement of every photograph and lens.
+void Perturb(PoseRefinement& poses, double size) {
   const torch::NoGradGuard no_grad;
   torch::manual_seed(4);
   for (torch::Tensor& p : poses.parameters()) p.normal_(0.0, size);
@@ -50,12 +50,12 @@ test::TwoEngines WithPoses(double size, bool with_proposal = false,
   test::TwoEngines e;
   e.pose_refinement = std::make_shared<PoseRefinement>(Ring(3, 2), PoseRefinementOptions());
   e.background = std::move(background);
-  Disturb(*e.pose_refinement, size);
+  Perturb(*e.pose_refinement, size);
   e.Make(60, with_proposal);
   return e;
 }
 
-TEST(PoseRefinement, ChangeNoBitBeforeTheyAreRefined) {
+TEST(PoseRefinement, ChangesNoBitBeforeTraining) {
   test::TwoEngines off;
   off.Make(60);
   const test::TwoEngines neutral = WithPoses(0);
@@ -67,19 +67,19 @@ TEST(PoseRefinement, ChangeNoBitBeforeTheyAreRefined) {
   }
 }
 
-TEST(PoseRefinement, MeanTheSameInBothEngines) {
+TEST(PoseRefinement, IsTheSameInBothEngines) {
   WithPoses(0.2).ExpectTheSame();
   WithPoses(0.2, true).ExpectTheSame();
 }
 
-TEST(PoseRefinement, GoTogetherWithALearnedBackground) {
+TEST(PoseRefinement, WorksWithALearnedBackground) {
   const auto background = std::make_shared<Background>(BackgroundOptions{8}, ColorEncoding::kSrgb);
   WithPoses(0.2, false, background).ExpectTheSame();
 }
 
-TEST(PoseRefinement, TurnRaysAboutTheirCamerasAndShiftThem) {
+TEST(PoseRefinement, RotatesRaysAboutTheirCamerasAndTranslatesThem) {
   PoseRefinement poses(Ring(12), PoseRefinementOptions{1.0});
-  Disturb(poses, 0.3);
+  Perturb(poses, 0.3);
   const torch::NoGradGuard no_grad;
   const auto places = Ring(12);
   for (std::int64_t i = 0; i < 12; ++i) {
@@ -88,7 +88,7 @@ TEST(PoseRefinement, TurnRaysAboutTheirCamerasAndShiftThem) {
     camera.linear() =
         Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), places[i].axis).toRotationMatrix();
     const Eigen::Isometry3d refined = poses.Refined(i, camera);
-    // The pixel at the height and width of a long focal length: zoomed by the lens's factor.
+    // The same pixel with the focal length scaled by the lens's factor.
     const double f = std::exp(poses.LogFocals()[0].item<double>());
     const Vector3d before = camera.linear() * Vector3d(0.3, -0.2, 1).normalized();
     const Vector3d after = refined.linear() * Vector3d(0.3, -0.2, f).normalized();
@@ -102,10 +102,10 @@ TEST(PoseRefinement, TurnRaysAboutTheirCamerasAndShiftThem) {
   }
 }
 
-TEST(PoseRefinement, CannotMoveTogether) {
+TEST(PoseRefinement, ProjectsOutSimilaritiesOfTheWholeScene) {
   const auto places = Ring(9);
   PoseRefinement poses(places, PoseRefinementOptions{1.0});
-  const auto left_of = [&](const std::function<void(Vector3d, float*)>& move) {
+  const auto remainder_of = [&](const std::function<void(Vector3d, float*)>& move) {
     const torch::NoGradGuard no_grad;
     torch::Tensor twist = poses.parameters()[0];
     twist.zero_();
@@ -114,25 +114,25 @@ TEST(PoseRefinement, CannotMoveTogether) {
     for (int i = 0; i < 9; ++i) move(places[i].centre - mean, twist[i].data_ptr<float>());
     return poses.Twists().abs().max().item<double>();
   };
-  EXPECT_LT(left_of([](Vector3d, float* t) { t[4] = 1; }), 1e-5);
-  EXPECT_LT(left_of([](Vector3d arm, float* t) {
+  EXPECT_LT(remainder_of([](Vector3d, float* t) { t[4] = 1; }), 1e-5);
+  EXPECT_LT(remainder_of([](Vector3d arm, float* t) {
               for (int c = 0; c < 3; ++c) t[3 + c] = static_cast<float>(arm[c]);
             }),
             1e-5);
-  EXPECT_LT(left_of([](Vector3d arm, float* t) {
+  EXPECT_LT(remainder_of([](Vector3d arm, float* t) {
               const Vector3d shift = Vector3d::UnitZ().cross(arm);
               t[2] = 1;
               for (int c = 0; c < 3; ++c) t[3 + c] = static_cast<float>(shift[c]);
             }),
             1e-5);
-  EXPECT_GT(left_of([](Vector3d arm, float* t) { t[3] = static_cast<float>(arm.y()); }), 0.1);
+  EXPECT_GT(remainder_of([](Vector3d arm, float* t) { t[3] = static_cast<float>(arm.y()); }), 0.1);
 }
 
-TEST(PoseRefinement, OfCamerasInOnePointMayStillTurn) {
+TEST(PoseRefinement, CanRotateCamerasInOnePoint) {
   std::vector<CameraPlace> places = Ring(5);
   for (CameraPlace& place : places) place.centre.setZero();
   PoseRefinement poses(places, PoseRefinementOptions{1.0});
-  Disturb(poses, 0.1);
+  Perturb(poses, 0.1);
   const torch::Tensor twist = poses.Twists();
   EXPECT_TRUE(torch::isfinite(twist).all().item<bool>());
   EXPECT_GT(twist.slice(1, 0, 3).abs().max().item<double>(), 0.01);
@@ -165,8 +165,8 @@ TEST(PoseRefinement, GradientsMatchCentralDifferences) {
   }
 }
 
-// A photograph that is held out was taken through a lens whose focal length is known better now.
-TEST(PoseRefinement, OfALensCountForPhotographsThatAreHeldOutToo) {
+// Held-out photographs share lenses with training photographs, and use the refined focal lengths.
+TEST(PoseRefinement, OfLensesAppliesToHeldOutPhotographs) {
   const test::SmallCapture capture = test::MakeSmallCapture(9, 24, 18);
   Config config = test::SmallConfig();
   config.effects.pose_refinement.emplace();
@@ -197,8 +197,8 @@ TEST(PoseRefinement, OfALensCountForPhotographsThatAreHeldOutToo) {
   EXPECT_NEAR(camera.params[0], longer.front().camera.params[0], 1e-3);
 }
 
-// A sample whose poses are wrong, as they should be and as training refines them.
-TEST(PoseRefinement, AreFoundByTraining) {
+// A generated capture with wrong poses: training refines them towards the true ones.
+TEST(PoseRefinement, IsFoundByTraining) {
   const test::ScratchFolder folder;
   synthetic::SampleOptions options;
   options.scenario = synthetic::Scenario::kPoseRefinement;
@@ -244,13 +244,13 @@ TEST(PoseRefinement, AreFoundByTraining) {
   std::ranges::sort(before);
   std::ranges::sort(after);
   EXPECT_GT(before[before.size() / 2], 0.3);
-  // What is left is seven tenths of a pixel of these small photographs.
+  // The remaining error is seven tenths of a pixel of these small photographs.
   EXPECT_LT(after[after.size() / 2], 0.75 * before[before.size() / 2]);
   const auto psnr = [&](const std::unique_ptr<Trainer>& trainer) {
     return Validation(with_right_poses, 1).Psnr(trainer->GetModel(), true);
   };
   EXPECT_GT(psnr(refining), psnr(fixed) + 1);
-  // As a trial sees it, which knows no right poses.
+  // As a trial measures it, without true poses.
   EXPECT_GT(refining->ValidationPsnrAtOwnExposure(), fixed->ValidationPsnrAtOwnExposure() + 1);
 }
 

@@ -19,7 +19,7 @@ kernels::HashGridOptions SmallGrid() {
   return options;
 }
 
-// A double field whose table is large enough to matter.
+// A field in double, whose table has values large enough to affect the output.
 std::shared_ptr<RadianceField> MakeField(ColorEncoding encoding = ColorEncoding::kSrgb) {
   FieldOptions options;
   options.hidden_width = 16;
@@ -34,7 +34,7 @@ std::shared_ptr<RadianceField> MakeField(ColorEncoding encoding = ColorEncoding:
   return field;
 }
 
-// [count,3], evenly over the sphere.
+// [count,3], uniformly distributed on the sphere.
 torch::Tensor UnitVectors(std::int64_t count) {
   const torch::Tensor d = torch::randn({count, 3}, torch::kDouble);
   return d / d.norm(2, 1, true);
@@ -75,7 +75,7 @@ TEST(RadianceField, TheSameSeedGivesTheSameParameters) {
   }
 }
 
-TEST(TruncatedExp, NeitherValueNorGradientOverflowsOrDies) {
+TEST(TruncatedExp, NeitherOverflowsNorLosesItsGradient) {
   torch::Tensor x = torch::tensor({-1e4, -200.0, -88.0, 0.0, 88.0, 200.0, 1e4}).requires_grad_();
   const torch::Tensor y = TruncatedExp(x);
   y.sum().backward();
@@ -85,8 +85,7 @@ TEST(TruncatedExp, NeitherValueNorGradientOverflowsOrDies) {
   EXPECT_TRUE((y.slice(0, 1) >= y.slice(0, 0, -1)).all().item<bool>());
 }
 
-// Integrals over the sphere of products of two harmonics are 1 for the same and 0 for different
-// ones.
+// The integral over the sphere of the product of two harmonics is 1 if they are the same, else 0.
 TEST(DirectionEncoding, SphericalHarmonicsAreOrthonormal) {
   torch::manual_seed(1);
   constexpr std::int64_t kCount = 400000;

@@ -13,7 +13,7 @@
 namespace nerf {
 namespace {
 
-// Rays whose pixels are as wide as the coarser cells.
+// Rays whose footprints are as wide as the cells of the coarser levels.
 test::TwoEngines WithFootprint(const std::optional<AntiAliasingOptions>& footprint,
                                bool with_proposal = false) {
   test::TwoEngines e;
@@ -32,44 +32,44 @@ RayBatch OneRay(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
   return ray;
 }
 
-TEST(Footprint, OfAPixelGrowsWithTheDistance) {
+TEST(Footprint, GrowsWithTheDistance) {
   const RayBatch ray = OneRay({-0.5f, 0, 0}, {1, 0, 0}, 0.01f);
-  const auto patch = Footprints(ray, std::vector<std::int64_t>{0, 0}, std::vector<float>{0.5f, 1},
-                                AntiAliasingOptions{1});
-  // The deviation of a uniform pixel; a unit is a quarter of the cube.
-  EXPECT_NEAR(patch[0], 0.25 * 0.01 * 0.5 / std::sqrt(12.0), 1e-8);
-  EXPECT_NEAR(patch[1], 2 * patch[0], 1e-8);
+  const auto footprint = Footprints(ray, std::vector<std::int64_t>{0, 0},
+                                    std::vector<float>{0.5f, 1}, AntiAliasingOptions{1});
+  // The standard deviation of a uniform pixel; a unit is a quarter of the cube.
+  EXPECT_NEAR(footprint[0], 0.25 * 0.01 * 0.5 / std::sqrt(12.0), 1e-8);
+  EXPECT_NEAR(footprint[1], 2 * footprint[0], 1e-8);
 }
 
-TEST(Footprint, ShrinksAsTheContractionDoesAcrossTheRadius) {
+TEST(Footprint, IsContractedPerpendicularToTheRadius) {
   const RayBatch ray = OneRay({0, 0, 0}, {0, 0, 1}, 0.01f);
-  const auto patch =
+  const auto footprint =
       Footprints(ray, std::vector<std::int64_t>{0}, std::vector<float>{8}, AntiAliasingOptions{1});
-  // At distance 8 the sphere of radius 8 has become one of 2 - 1/8.
-  EXPECT_NEAR(patch[0], 0.25 * 0.01 * (2 - 1.0 / 8) / std::sqrt(12.0), 1e-8);
+  // The sphere of radius 8 is contracted to radius 2 - 1/8.
+  EXPECT_NEAR(footprint[0], 0.25 * 0.01 * (2 - 1.0 / 8) / std::sqrt(12.0), 1e-8);
 }
 
-TEST(Footprint, LeavesOfALevelWhatAGaussianOfItsWidthLeaves) {
+TEST(Footprint, WeighsLevelsByErf) {
   kernels::HashGridOptions options;
   options.levels = 3;
   options.base_resolution = 10;
   options.max_resolution = 1000;
   const auto layout = kernels::MakeHashGridLayout(options);
   const std::vector<float> footprint = {0, 0.01f};
-  const auto shares = AntiAliasingWeights(layout, footprint);
-  ASSERT_EQ(shares.size(), 6u);
-  for (int l = 0; l < 3; ++l) EXPECT_EQ(shares[l], 1);
-  EXPECT_NEAR(shares[3], std::erf(10 / std::sqrt(8.0)), 1e-6);
-  EXPECT_NEAR(shares[4], std::erf(1 / std::sqrt(8.0)), 1e-6);
-  EXPECT_NEAR(shares[5], std::erf(0.1 / std::sqrt(8.0)), 1e-6);
+  const auto weights = AntiAliasingWeights(layout, footprint);
+  ASSERT_EQ(weights.size(), 6u);
+  for (int l = 0; l < 3; ++l) EXPECT_EQ(weights[l], 1);
+  EXPECT_NEAR(weights[3], std::erf(10 / std::sqrt(8.0)), 1e-6);
+  EXPECT_NEAR(weights[4], std::erf(1 / std::sqrt(8.0)), 1e-6);
+  EXPECT_NEAR(weights[5], std::erf(0.1 / std::sqrt(8.0)), 1e-6);
 }
 
-TEST(Footprint, MeansTheSameInBothEngines) {
+TEST(Footprint, IsTheSameInBothEngines) {
   WithFootprint(AntiAliasingOptions()).ExpectTheSame();
   WithFootprint(AntiAliasingOptions(), true).ExpectTheSame();
 }
 
-TEST(Footprint, GoesTogetherWithRefinedPoses) {
+TEST(Footprint, WorksWithPoseRefinement) {
   test::TwoEngines e;
   e.anti_aliasing = AntiAliasingOptions();
   e.pose_refinement = std::make_shared<PoseRefinement>(
@@ -81,7 +81,7 @@ TEST(Footprint, GoesTogetherWithRefinedPoses) {
   e.ExpectTheSame();
 }
 
-TEST(Footprint, OfPointsChangesNoBit) {
+TEST(Footprint, OfSizeZeroChangesNoBit) {
   const test::TwoEngines off = WithFootprint({}), point = WithFootprint(AntiAliasingOptions{0}),
                          on = WithFootprint(AntiAliasingOptions{1});
   for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
@@ -91,8 +91,8 @@ TEST(Footprint, OfPointsChangesNoBit) {
   }
 }
 
-// The renderer of lower qualities, at full quality, sees the patches that the engine sees.
-TEST(Footprint, IsSeenByPacketsToo) {
+// The renderer of lower qualities, without approximations, uses the same footprints as the engine.
+TEST(Footprint, IsUsedByThePacketRenderer) {
   const test::TwoEngines e = WithFootprint(AntiAliasingOptions{4}, true);
   RenderQuality exact = RenderQuality::Of(0.999, e.march, e.proposal_options);
   exact.packet = 1;
@@ -111,17 +111,17 @@ TEST(Footprint, IsSeenByPacketsToo) {
   EXPECT_GT(change, 0.02);
 }
 
-TEST(Footprint, OfAPixelIsAsWideAsTheDistanceOfItsNeighboursRays) {
+TEST(Footprint, SpreadIsTheDistanceBetweenNeighbouringRays) {
   const Camera camera = PinholeFromFov(64, 48, 0.8);
   const std::vector<std::int64_t> pixels = {24 * 64 + 32, 24 * 64 + 33, 2 * 64 + 3, 3 * 64 + 3};
   const RayBatch rays =
       RaysOfPixels(camera, Eigen::Isometry3d::Identity(), pixels, Eigen::Vector3f::Zero()).rays;
-  const auto apart = [&](int a, int b) {
+  const auto distance = [&](int a, int b) {
     return (Eigen::Vector3f(&rays.direction[3 * a]) - Eigen::Vector3f(&rays.direction[3 * b]))
         .norm();
   };
-  EXPECT_NEAR(rays.spread[0], apart(0, 1), 0.01f * rays.spread[0]);
-  EXPECT_NEAR(rays.spread[2], apart(2, 3), 0.1f * rays.spread[2]);
+  EXPECT_NEAR(rays.spread[0], distance(0, 1), 0.01f * rays.spread[0]);
+  EXPECT_NEAR(rays.spread[2], distance(2, 3), 0.1f * rays.spread[2]);
 }
 
 }  // namespace

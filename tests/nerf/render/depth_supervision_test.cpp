@@ -18,7 +18,7 @@
 namespace nerf {
 namespace {
 
-// A capture of few photographs: the first and the last are those to judge by.
+// A capture of few photographs, of which every eighth is for validation.
 struct FewPhotographs {
   test::ScratchFolder folder;
   PosedImages sparse;
@@ -43,7 +43,7 @@ struct FewPhotographs {
   }
 };
 
-// Rays of both engines with known distances, but for every other one.
+// Both engines with a batch in which every other ray has a known distance.
 test::TwoEngines WithDistances(const std::optional<DepthSupervisionOptions>& depth) {
   test::TwoEngines e;
   e.depth = depth;
@@ -63,18 +63,18 @@ TEST(DepthLoss, OfASampleGrowsWithItsRelativeErrorAndIsBounded) {
   EXPECT_LT(DepthCost(1e6, 3, options), 1);
   const std::vector<float> t = {3, 0, 7};
   const std::vector<std::int64_t> ray = {0, 0, 1};
-  const std::vector<float> target = {3, 0};  // of the second ray nothing is known
+  const std::vector<float> target = {3, 0};  // the second ray has no target
   EXPECT_EQ(DepthCosts(t, ray, target, options), (std::vector<float>{0, 1 / 1.01f, 0}));
 }
 
-TEST(DepthLoss, MeansTheSameInBothEngines) {
+TEST(DepthLoss, IsTheSameInBothEngines) {
   for (const double weight : {0.1, 3.0}) {
     test::TwoEngines e = WithDistances(DepthSupervisionOptions{0.1, weight, 0.05});
     e.ExpectTheSame();
   }
 }
 
-TEST(DepthLoss, ChangesNothingAtTheWeightZero) {
+TEST(DepthLoss, WithWeightZeroChangesNothing) {
   const test::TwoEngines off = WithDistances({}),
                          zero = WithDistances(DepthSupervisionOptions{0.1, 0, 0.05}),
                          on = WithDistances(DepthSupervisionOptions{0.1, 1, 0.05});
@@ -85,7 +85,7 @@ TEST(DepthLoss, ChangesNothingAtTheWeightZero) {
   }
 }
 
-// How far each pixel of a view sees in truth, normalized units.
+// The true distance of each pixel of a view, normalized units.
 std::vector<double> TrueDistances(const FewPhotographs& few, const View& view) {
   const std::string stem = view.name.substr(0, view.name.find('.'));
   const Image depth =
@@ -97,30 +97,30 @@ std::vector<double> TrueDistances(const FewPhotographs& few, const View& view) {
   return distances;
 }
 
-TEST(SeenPoints, StandAsFarAwayAsWhatTheirPixelsShow) {
+TEST(SparseDepths, AreTheDistancesOfTheirPixels) {
   const FewPhotographs few;
-  std::size_t points = 0, far_off = 0;
+  std::size_t points = 0, wrong = 0;
   for (const View& view : few.data.train) {
     const std::vector<double> truth = TrueDistances(few, view);
     for (const DepthObservation& point : view.depth_observations) {
       const double expected = truth[point.pixel];
       ++points;
-      // A pixel is large here: at an edge its middle shows something else.
-      far_off += std::fabs(static_cast<double>(point.distance) / expected - 1) > 0.05;
+      // Pixels are large here: at an edge the centre of a pixel can show another surface.
+      wrong += std::fabs(static_cast<double>(point.distance) / expected - 1) > 0.05;
     }
   }
   EXPECT_GT(points, 1000u);
-  EXPECT_LT(far_off, points / 10);
+  EXPECT_LT(wrong, points / 10);
   for (const View& view : few.data.validation) EXPECT_TRUE(view.depth_observations.empty());
 }
 
-TEST(SeenPoints, AreDrawnAsOftenAsAskedFor) {
+TEST(SparseDepths, AreSampledWithTheConfiguredShare) {
   const FewPhotographs few;
   const TargetBatch batch = PixelSampler(few.data.train, 0, 0.25).Sample(4000, 3, 7);
   ASSERT_EQ(batch.distance.size(), 4000u);
   const auto known = 4000 - std::ranges::count(batch.distance, 0.0f);
   EXPECT_NEAR(static_cast<double>(known), 1000, 140);  // five standard deviations
-  // Without a share of theirs, what is drawn is the same to the bit.
+  // With a share of zero, the same rays are drawn as without points.
   Dataset plain = few.data;
   for (View& view : plain.train) view.depth_observations.clear();
   const TargetBatch with = PixelSampler(few.data.train).Sample(500, 3, 7),
@@ -129,7 +129,7 @@ TEST(SeenPoints, AreDrawnAsOftenAsAskedFor) {
   EXPECT_TRUE(with.distance.empty());
 }
 
-// The median relative error of the distances that a model sees in photographs it does not know.
+// The median relative error of a model's depth in validation views.
 double DistanceError(const Model& model, const FewPhotographs& few) {
   std::vector<double> errors;
   for (const View& view : few.data.validation) {
@@ -149,7 +149,7 @@ double DistanceError(const Model& model, const FewPhotographs& few) {
   return errors[errors.size() / 2];
 }
 
-TEST(SeenPoints, BringMatterToWhereItStandsWherePhotographsAreFew) {
+TEST(SparseDepths, ImproveDepthWherePhotographsAreFew) {
   const FewPhotographs few;
   const SceneFacts scene = FactsOf(few.data, few.normalized_from_world);
   const auto error = [&](const std::string& effect) {

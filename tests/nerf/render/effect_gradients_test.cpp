@@ -1,4 +1,4 @@
-// Each effect in the whole path, from the rays to the loss: gradients are central differences.
+// Gradients of the whole path, from rays to loss, with each effect, against central differences.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct Effect {
 
 class EffectOnTheWholePath : public testing::TestWithParam<Effect> {};
 
-TEST_P(EffectOnTheWholePath, HasGradientsThatAreCentralDifferences) {
+TEST_P(EffectOnTheWholePath, GradientsMatchCentralDifferences) {
   std::vector<torch::Tensor> others;
   test::SmallEngine e(torch::kDouble, 1e-9, false, [&](ModelParts& parts) {
     GetParam().add(parts);
@@ -44,8 +44,9 @@ TEST_P(EffectOnTheWholePath, HasGradientsThatAreCentralDifferences) {
   test::ExpectGradientsOfTheWholePath(e, others);
 }
 
-// Of poses the field's gradients; their own, for which distances along the ray are constants, have
-// a test beside them (Poses.GradientsMatchCentralDifferences).
+// For the gradients of the field with refined poses. The gradients of the poses, for which
+// distances along the ray are constants, are tested by
+// PoseRefinement.GradientsMatchCentralDifferences.
 std::shared_ptr<PoseRefinement> ThreePoses() {
   const std::vector<CameraPlace> places = {
       {{2, 0, 0}, {-1, 0, 0}, 0}, {{0, 2, 0}, {0, -1, 0}, 0}, {{0, 0, 2}, {0, 0, -1}, 0}};

@@ -1,4 +1,4 @@
-// What both engines owe whoever calls them: hostile batches, odd batches, other threads.
+// The contract of both engines: invalid batches, unusual batches, other numbers of threads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using test::TwoEngines;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-std::string RefusalOf(const std::function<void()>& call) {
+std::string RejectionOf(const std::function<void()>& call) {
   try {
     call();
   } catch (const std::invalid_argument& error) {
@@ -26,44 +26,44 @@ std::string RefusalOf(const std::function<void()>& call) {
   return "no error";
 }
 
-TEST(EngineContract, RefusePoisonedRaysWithTheirIndex) {
+TEST(EngineContract, InvalidRaysAreRejectedWithTheirIndex) {
   TwoEngines e;
   e.Make(8);
   const PacketRenderer packets(*e.parts, RenderQuality());
-  const auto expect_refused = [&](std::vector<float> RayBatch::*values, std::size_t at,
-                                  float poison) {
+  const auto expect_rejected = [&](std::vector<float> RayBatch::*values, std::size_t at,
+                                   float invalid) {
     TargetBatch batch = e.batch;
-    (batch.rays.*values)[at] = poison;
+    (batch.rays.*values)[at] = invalid;
     for (Engine* engine : {e.libtorch.get(), e.fused.get()}) {
-      for (const auto& refusal : {RefusalOf([&] { engine->Render(batch.rays); }),
-                                  RefusalOf([&] { engine->AccumulateGradients(batch); })}) {
-        EXPECT_THAT(refusal, testing::HasSubstr("ray 5")) << poison;
+      for (const auto& message : {RejectionOf([&] { engine->Render(batch.rays); }),
+                                  RejectionOf([&] { engine->AccumulateGradients(batch); })}) {
+        EXPECT_THAT(message, testing::HasSubstr("ray 5")) << invalid;
       }
     }
-    EXPECT_THAT(RefusalOf([&] { packets.Render(batch.rays); }), testing::HasSubstr("ray 5"));
+    EXPECT_THAT(RejectionOf([&] { packets.Render(batch.rays); }), testing::HasSubstr("ray 5"));
   };
-  for (const float poison : {NAN, kInfinity, -kInfinity}) {
-    expect_refused(&RayBatch::origin, 16, poison);
-    expect_refused(&RayBatch::direction, 17, poison);
-    expect_refused(&RayBatch::background, 15, poison);
-    expect_refused(&RayBatch::jitter, 5, poison);
+  for (const float invalid : {NAN, kInfinity, -kInfinity}) {
+    expect_rejected(&RayBatch::origin, 16, invalid);
+    expect_rejected(&RayBatch::direction, 17, invalid);
+    expect_rejected(&RayBatch::background, 15, invalid);
+    expect_rejected(&RayBatch::jitter, 5, invalid);
   }
-  expect_refused(&RayBatch::origin, 15, std::numeric_limits<float>::max());
-  expect_refused(&RayBatch::direction, 15, 1e30f);
-  expect_refused(&RayBatch::jitter, 5, -0.5f);
+  expect_rejected(&RayBatch::origin, 15, std::numeric_limits<float>::max());
+  expect_rejected(&RayBatch::direction, 15, 1e30f);
+  expect_rejected(&RayBatch::jitter, 5, -0.5f);
 }
 
-TEST(EngineContract, RefuseADirectionWithoutLength) {
+TEST(EngineContract, DirectionsThatAreNotUnitVectorsAreRejected) {
   TwoEngines e;
   e.Make(8);
   for (const float length : {0.0f, 1e-40f, 1e-3f}) {
     RayBatch rays = e.batch.rays;
     for (int c = 0; c < 3; ++c) rays.direction[6 + c] *= length;
-    EXPECT_THAT(RefusalOf([&] { e.fused->Render(rays); }), testing::HasSubstr("ray 2"));
+    EXPECT_THAT(RejectionOf([&] { e.fused->Render(rays); }), testing::HasSubstr("ray 2"));
   }
 }
 
-TEST(EngineContract, NameTheRayWhoseTargetIsNoNumber) {
+TEST(EngineContract, ANonFiniteTargetIsReportedWithItsRay) {
   TwoEngines e;
   e.Make(8);
   e.batch.rgb[3 * 6 + 1] = NAN;
@@ -77,7 +77,7 @@ TEST(EngineContract, NameTheRayWhoseTargetIsNoNumber) {
   }
 }
 
-TEST(EngineContract, ARayMayStandAtTheOriginLookAlongAnAxisAndStartOnTheUnitSphere) {
+TEST(EngineContract, RaysMayStartAtTheOriginOrOnTheUnitSphereAndBeParallelToAnAxis) {
   TwoEngines e;
   e.Make(6);
   e.batch.rays.origin = {0, 0, 0, 1, 0, 0, 0, -1, 0, 0, 0, 1, 1e-40f, 0, -0.0f, 100, 0, 0};
@@ -85,7 +85,7 @@ TEST(EngineContract, ARayMayStandAtTheOriginLookAlongAnAxisAndStartOnTheUnitSphe
   e.ExpectTheSame();
 }
 
-TEST(EngineContract, AnImageThatIsRightAlreadyTrainsOnWithoutGradients) {
+TEST(EngineContract, GradientsVanishWhereTheImageIsExact) {
   TwoEngines e;
   e.Make(20);
   for (Engine* engine : {e.libtorch.get(), e.fused.get()}) {
@@ -99,14 +99,14 @@ TEST(EngineContract, AnImageThatIsRightAlreadyTrainsOnWithoutGradients) {
   }
 }
 
-TEST(EngineContract, OneRayIsEnough) {
+TEST(EngineContract, ABatchMayHaveOneRay) {
   TwoEngines e;
   e.Make(1);
   e.ExpectTheSame();
 }
 
-// The bound on what another number of threads may change: the order of sums of gradients.
-TEST(EngineContract, OtherThreadsChangeGradientsByRoundingAlone) {
+// The number of threads changes the order in which gradients are summed.
+TEST(EngineContract, TheNumberOfThreadsChangesGradientsOnlyByRounding) {
   TwoEngines e;
   e.Make(97, /*with_proposal=*/true);
   const int threads = NumThreads();

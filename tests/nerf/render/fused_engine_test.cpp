@@ -15,26 +15,26 @@ using test::TwoEngines;
 
 class FusedEngineAtEveryLevel : public test::EverySimdLevel {};
 
-TEST_P(FusedEngineAtEveryLevel, MeansWhatLibTorchEngineMeans) {
+TEST_P(FusedEngineAtEveryLevel, EqualsLibTorchEngine) {
   TwoEngines e;
   e.Make(50);
   e.ExpectTheSame();
 }
 
-TEST_P(FusedEngineAtEveryLevel, MeansWhatLibTorchEngineMeansWithAProposal) {
+TEST_P(FusedEngineAtEveryLevel, EqualsLibTorchEngineWithAProposalNetwork) {
   for (const double exponent : {0.0, 0.3, 1.0}) {
     TwoEngines e;
     e.Make(50, /*with_proposal=*/true);
     SCOPED_TRACE(exponent);
     e.context.annealing.proposal = exponent;
-    // With 0 the places of samples depend on no density, and are the same.
+    // With exponent 0 sample positions depend on no density and are the same in both engines.
     e.ExpectTheSame(exponent == 0 ? 1e-4 : 0.1);
   }
 }
 
 NERF_FOR_EVERY_SIMD_LEVEL(FusedEngineAtEveryLevel);
 
-TEST(FusedEngine, MeansTheSameForLinearRadianceSquaredErrorsAndOtherNetworks) {
+TEST(FusedEngine, EqualsLibTorchEngineForLinearRadianceSquaredErrorsAndOtherNetworks) {
   TwoEngines e;
   e.color = ColorEncoding::kLinear;
   e.loss.kind = LossKind::kMse;
@@ -46,14 +46,14 @@ TEST(FusedEngine, MeansTheSameForLinearRadianceSquaredErrorsAndOtherNetworks) {
   e.ExpectTheSame();
 }
 
-TEST(FusedEngine, MeansTheSameWhileDetailIsFadedIn) {
+TEST(FusedEngine, EqualsLibTorchEngineWhileDetailIsFadedIn) {
   TwoEngines e;
   e.Make(20);
   e.context.annealing.detail = 0.45;
   e.ExpectTheSame();
 }
 
-TEST(FusedEngine, MeansTheSameWithManySamplesARayAndOnOneThread) {
+TEST(FusedEngine, EqualsLibTorchEngineWithManySamplesPerRayOnAnyNumberOfThreads) {
   TwoEngines e;
   e.march.steps_per_unit = 300;
   e.march.stop_transmittance = 1e-6;
@@ -66,7 +66,7 @@ TEST(FusedEngine, MeansTheSameWithManySamplesARayAndOnOneThread) {
   SetNumThreads(threads);
 }
 
-TEST(FusedEngine, UpdatesOccupancyAsLibTorchEngineDoes) {
+TEST(FusedEngine, UpdatesOccupancyLikeLibTorchEngine) {
   TwoEngines e;
   e.Make(1);
   StepContext context;
@@ -92,7 +92,7 @@ TEST(FusedEngine, RepeatsBitForBit) {
   for (const auto& [name, gradient] : e.Gradients()) EXPECT_TRUE(gradient.equal(first.at(name)));
 }
 
-TEST(FusedEngine, RaysThroughAnEmptyGridSeeTheBackground) {
+TEST(FusedEngine, RaysThroughAnEmptyGridShowTheBackground) {
   TwoEngines e;
   e.Make(6);
   e.grid->KeepVisible([](const Eigen::Vector3f&, float) { return false; });

@@ -48,9 +48,9 @@ TEST(LibTorchEngine, FloatAgreesWithDouble) {
   }
 }
 
-TEST(LibTorchEngine, StoppingEarlyCostsLessThanTheLightThatIsLeft) {
+TEST(LibTorchEngine, StoppingEarlyChangesColoursByLessThanTheTransmittance) {
   Fixture exact(torch::kDouble, 1e-12), early(torch::kDouble, 0.05);
-  for (const Fixture* f : {&exact, &early}) {  // dense enough to end rays
+  for (const Fixture* f : {&exact, &early}) {  // dense enough that rays stop early
     const torch::NoGradGuard no_grad;
     f->field->named_parameters()["density_network.layer1.weight"].slice(0, 0, 1).fill_(0.5);
   }
@@ -69,7 +69,7 @@ TEST(LibTorchEngine, DepthStaysBetweenNearAndFar) {
   }
 }
 
-TEST(LibTorchEngine, RaysThroughAnEmptyGridSeeTheBackground) {
+TEST(LibTorchEngine, RaysThroughAnEmptyGridShowTheBackground) {
   Fixture f(torch::kFloat);
   f.grid->KeepVisible([](const Eigen::Vector3f&, float) { return false; });
   const RenderOutput out = f.engine->Render(f.batch.rays);

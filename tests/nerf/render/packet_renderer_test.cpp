@@ -22,7 +22,7 @@ RenderQuality Exact(const TwoEngines& e) {
 
 class PacketRendererAtEveryLevel : public test::EverySimdLevel {};
 
-TEST_P(PacketRendererAtEveryLevel, IsTheEngineWhereNothingIsLeftOut) {
+TEST_P(PacketRendererAtEveryLevel, EqualsTheEngineWithoutApproximations) {
   for (const bool with_proposal : {false, true}) {
     TwoEngines e;
     e.march.stop_transmittance = 1e-6;
@@ -57,10 +57,10 @@ TEST(PacketRenderer, StoppingEarlyChangesNoPixelByMoreThanItsBound) {
     largest = std::max(largest, std::fabs(static_cast<double>(out.rgb[i] - exact.rgb[i])));
   }
   EXPECT_LE(largest, quality.stop_transmittance);
-  EXPECT_GT(largest, 1e-4);  // it did leave something out
+  EXPECT_GT(largest, 1e-4);  // rays did stop early
 }
 
-// However thin the samples, their colour is not lost, only taken from fewer of them.
+// However small the weight of each sample, its colour is not lost, but represented by fewer ones.
 TEST(PacketRenderer, ThinFogKeepsItsColourAndOpacity) {
   TwoEngines e;
   e.Make(40);
@@ -84,8 +84,8 @@ TEST(PacketRenderer, ThinFogKeepsItsColourAndOpacity) {
   }
 }
 
-// The share's colour is that of its middle: a smooth change of colour is followed, not delayed.
-TEST(PacketRenderer, FewerColoursAreNoBiasTowardsTheBack) {
+// The colour of a share of weight is that of its middle, so smooth changes of colour have no bias.
+TEST(PacketRenderer, FewerColoursDoNotBiasTowardsTheBack) {
   TwoEngines e;
   e.march.steps_per_unit = 200;
   e.Make(200);
@@ -104,7 +104,7 @@ TEST(PacketRenderer, FewerColoursAreNoBiasTowardsTheBack) {
   EXPECT_LT(std::fabs(sum) / static_cast<double>(exact.rgb.size()), 0.005);
 }
 
-TEST(PacketRenderer, NeighboursThatAreTheSameRayLoseNothingByAPacket) {
+TEST(PacketRenderer, APacketOfEqualRaysEqualsSingleRays) {
   TwoEngines e;
   e.Make(64, /*with_proposal=*/true);
   RayBatch& rays = e.batch.rays;
@@ -127,8 +127,9 @@ TEST(PacketRenderer, NeighboursThatAreTheSameRayLoseNothingByAPacket) {
   }
 }
 
-// A packet's middle may look past what one of its rays meets: then that ray looks for itself.
-TEST(PacketRenderer, RaysThatTheirPacketMissedArePlacedAlone) {
+// The mean ray of a packet may miss a surface that one of its rays hits: that ray gets samples of
+// its own.
+TEST(PacketRenderer, RaysWithMissedSurfacesGetSamplesOfTheirOwn) {
   TwoEngines e;
   e.Make(64, /*with_proposal=*/true);  // rays in all directions: no neighbours at all
   RenderQuality quality = Exact(e);
@@ -143,10 +144,10 @@ TEST(PacketRenderer, RaysThatTheirPacketMissedArePlacedAlone) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(together.rgb[3 * r + c], alone.rgb[3 * r + c], 1e-5);
   }
   EXPECT_GT(missed, 0);
-  EXPECT_GT(together.samples, alone.samples);  // they were looked at twice
+  EXPECT_GT(together.samples, alone.samples);  // some rays were evaluated twice
 }
 
-TEST(PacketRenderer, ABatchNeedNotBeWholePackets) {
+TEST(PacketRenderer, TheLastPacketMayBeIncomplete) {
   TwoEngines e;
   e.Make(21, /*with_proposal=*/true);
   RenderQuality quality = Exact(e);
@@ -155,7 +156,7 @@ TEST(PacketRenderer, ABatchNeedNotBeWholePackets) {
   for (const float value : RenderWith(e, quality).rgb) EXPECT_TRUE(std::isfinite(value));
 }
 
-TEST(PacketRenderer, ShowsANonFiniteFieldAsItIs) {
+TEST(PacketRenderer, DoesNotHideNaN) {
   TwoEngines e;
   e.Make(8);
   const torch::NoGradGuard no_grad;
@@ -164,13 +165,13 @@ TEST(PacketRenderer, ShowsANonFiniteFieldAsItIs) {
   for (const float value : RenderWith(e, quality).rgb) EXPECT_TRUE(std::isnan(value));
 }
 
-TEST(RenderQuality, TheDialGoesFromFastToExact) {
+TEST(RenderQuality, GoesFromFastToExact) {
   const MarchOptions march;
   const ProposalOptions proposal;
   RenderQuality before = RenderQuality::Of(0, march, proposal);
   EXPECT_EQ(before.packet, 16);
-  for (const double dial : {0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) {
-    const RenderQuality q = RenderQuality::Of(dial, march, proposal);
+  for (const double quality : {0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) {
+    const RenderQuality q = RenderQuality::Of(quality, march, proposal);
     EXPECT_LE(q.packet, before.packet);
     EXPECT_GE(q.samples, before.samples);
     EXPECT_LT(q.color_share, before.color_share);
@@ -185,7 +186,7 @@ TEST(RenderQuality, TheDialGoesFromFastToExact) {
   EXPECT_THROW(RenderQuality::Of(std::nan(""), march, proposal), InputError);
 }
 
-// Shows each ray's direction as its colour, and keeps the order in which rays came.
+// Renders each ray's direction as its colour, and records the rays in their order.
 class DirectionRenderer : public RayRenderer {
  public:
   RenderOutput Render(const RayBatch& rays) const override {
@@ -199,7 +200,7 @@ class DirectionRenderer : public RayRenderer {
   mutable std::vector<float> directions;
 };
 
-TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {
+TEST(RenderView, RendersEachPixelByItsRayAndNeighboursTogether) {
   for (const auto& [width, height] : {std::pair{4, 4}, {7, 5}, {1, 1}, {70, 41}}) {
     Camera camera;
     camera.width = width;
@@ -236,11 +237,11 @@ TEST(RenderView, ShowsEachPixelItsOwnRayAndSendsNeighboursTogether) {
   }
 }
 
-TEST(RenderView, PixelsBesideTheLensBorrowTheRayOfANeighbour) {
+TEST(RenderView, PixelsOutsideTheFieldOfViewUseTheRayOfANeighbour) {
   Camera camera;
   camera.model = CameraModel::kOpenCV;
   camera.width = camera.height = 200;
-  camera.params = {100, 100, 100, 100, -0.3, 0, 0, 0};  // nothing is seen 71 pixels off the middle
+  camera.params = {100, 100, 100, 100, -0.3, 0, 0, 0};  // ends 71 pixels from the centre
   DirectionRenderer renderer;
   const RenderedView view = RenderView(renderer, camera, Eigen::Isometry3d::Identity(),
                                        Eigen::Vector3f(1, 0, 0), ColorEncoding::kLinear);
@@ -265,7 +266,7 @@ TEST(RenderPreview, ShowsTheWholePictureFromFewRays) {
   EXPECT_EQ(image.width, 21);
   EXPECT_EQ(image.height, 13);
   EXPECT_LT(renderer.directions.size() / 3, 21u * 13u / 4u);
-  // The middle of the first block of 4 x 4 pixels.
+  // The centre of the first block of 4 x 4 pixels.
   const Eigen::Vector3d d = Eigen::Vector3d((2 - 10.5) / 100, (2 - 6.5) / 100, 1).normalized();
   for (int pixel : {0, 3, 21, 3 * 21 + 3}) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.pixels[3 * pixel + c], d[c], 1e-6);

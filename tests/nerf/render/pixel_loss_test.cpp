@@ -16,7 +16,7 @@ namespace {
 constexpr std::int64_t kRays = 40;
 constexpr std::int64_t kPhotographs = 3;
 
-// Colours that lie on both sides of the Huber delta and of white.
+// Colours on both sides of the Huber delta and of white.
 struct Pixels {
   TargetBatch batch;
   std::vector<float> rgb, opacity;
@@ -39,8 +39,8 @@ struct Pixels {
   torch::Tensor Target() const { return TensorOf(batch.rgb, {kRays, 3}, torch::kDouble).clone(); }
 };
 
-// The plain loops against ColorLoss and Exposure as autograd has them, in double.
-void ExpectAsAutograd(const PixelModel& model, Exposure* exposure) {
+// Compares the plain loops with ColorLoss and Exposure by autograd, in double.
+void ExpectEqualsAutograd(const PixelModel& model, Exposure* exposure) {
   Pixels pixels;
   torch::Tensor rgb = pixels.Rgb().requires_grad_(true);
   const torch::Tensor target = pixels.Target();
@@ -56,7 +56,7 @@ void ExpectAsAutograd(const PixelModel& model, Exposure* exposure) {
   PixelLoss plain;
   plain.Clear(model);
   std::vector<float> ray_error(kRays);
-  // In two tiles, as a thread takes them.
+  // In two tiles.
   const std::span<const float> all(pixels.rgb), opacity(pixels.opacity);
   std::vector<float> dL_drgb;
   for (const auto& [first, count] : {std::pair{0, 24}, std::pair{24, 16}}) {
@@ -83,18 +83,18 @@ void ExpectAsAutograd(const PixelModel& model, Exposure* exposure) {
   EXPECT_TRUE(torch::allclose(exposure->parameters().front().grad(), of_autograd, 1e-4, 1e-7));
 }
 
-TEST(PixelLoss, IsColorLossOfEachKind) {
+TEST(PixelLoss, EqualsColorLossOfEachKind) {
   for (const LossKind kind : {LossKind::kHuber, LossKind::kMse}) {
     for (const bool robust : {false, true}) {
       PixelModel model;
       model.loss.kind = kind;
       if (robust) model.robust = RobustOptions();
-      ExpectAsAutograd(model, nullptr);
+      ExpectEqualsAutograd(model, nullptr);
     }
   }
 }
 
-TEST(PixelLoss, MultipliesByTheGainsOfPhotographsAndForgivesClippedPixels) {
+TEST(PixelLoss, AppliesGainsAndAllowsBrighterColoursAtClippedPixels) {
   Exposure exposure(kPhotographs, ColorEncoding::kSrgb);
   {
     const torch::NoGradGuard no_grad;
@@ -105,10 +105,10 @@ TEST(PixelLoss, MultipliesByTheGainsOfPhotographsAndForgivesClippedPixels) {
   model.saturates = true;
   const torch::Tensor gains = exposure.Gains().detach().contiguous();
   model.gain.assign(gains.data_ptr<float>(), gains.data_ptr<float>() + gains.numel());
-  ExpectAsAutograd(model, &exposure);
+  ExpectEqualsAutograd(model, &exposure);
 }
 
-TEST(PixelLoss, TellsWhereItIsNotFinite) {
+TEST(PixelLoss, ReportsNonFiniteValues) {
   Pixels pixels;
   PixelModel model;
   PixelLoss loss;
@@ -118,8 +118,8 @@ TEST(PixelLoss, TellsWhereItIsNotFinite) {
   EXPECT_FALSE(loss.Add(model, pixels.batch, 0, pixels.rgb, pixels.opacity, ray_error));
 }
 
-// The error of a ray that a robust loss has no use for does not draw more rays there.
-TEST(PixelLoss, RayErrorsAreWeightedAsTheRobustLossWeightsRays) {
+// Outliers, which have little weight in a robust loss, must not attract more rays.
+TEST(PixelLoss, RayErrorsHaveTheWeightsOfTheRobustLoss) {
   Pixels pixels;
   PixelModel plain, robust;
   robust.robust = RobustOptions();

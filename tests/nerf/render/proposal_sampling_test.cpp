@@ -52,13 +52,13 @@ TEST(ProposalLoss, GradientsMatchCentralDifferences) {
   FillTable(proposal, 1.0);
   proposal.to(torch::kDouble);
   const ProposedSamples first = ProposeSamples(rays, proposal, options, march);
-  // The rays end early, as they do where the field is opaque.
+  // The rays stop early, as where the field is opaque.
   PackedSamples visible = KeepFront(first.samples, {7, 5, 0, 6});
   torch::manual_seed(3);
   torch::Tensor sigma = (3 * torch::rand({visible.Size()}, torch::kDouble)).requires_grad_();
   const auto loss = [&] {
     ProposedSamples again = ProposeSamples(rays, proposal, options, march);
-    again.edges = first.edges;  // the places of samples carry no gradient
+    again.edges = first.edges;  // sample positions are not differentiable
     return ProposalLoss(again, visible, sigma, options, march);
   };
   EXPECT_GT(loss().item<double>(), 0);
@@ -67,7 +67,7 @@ TEST(ProposalLoss, GradientsMatchCentralDifferences) {
     test::ExpectGradientMatchesCentralDifferences(loss, x, 1e-6, 1e-6);
   }
 
-  // What the interlevel loss says of the weights of the field is no gradient to it.
+  // The interlevel loss has no gradient in the field's density.
   ProposalOptions only_distortion = options;
   only_distortion.loss_weight = 0;
   ProposedSamples fixed = first;
@@ -84,7 +84,7 @@ TEST(ProposalLoss, GradientsMatchCentralDifferences) {
   EXPECT_TRUE(torch::allclose(sigma.grad(), alone));
 }
 
-TEST(ProposeSamples, IntervalsTileEachRayWhateverTheDensity) {
+TEST(ProposeSamples, IntervalsCoverEachRayForAnyDensity) {
   const ProposalOptions options = SmallProposal();
   const MarchOptions march;
   const RayBatch rays = SomeRays(6);
@@ -107,8 +107,7 @@ TEST(ProposeSamples, IntervalsTileEachRayWhateverTheDensity) {
   }
 }
 
-// A wall of the proposal's own making: its samples stand closer where it lets no light through.
-TEST(ProposeSamples, SamplesStandWhereTheWeightsAre) {
+TEST(ProposeSamples, SamplesAreDenserWhereWeightsAreLarge) {
   ProposalOptions options = SmallProposal();
   options.intervals = 64;
   options.samples = 16;

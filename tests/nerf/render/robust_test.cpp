@@ -14,18 +14,18 @@ TEST(RobustLoss, IsTheOrdinaryLossWhereErrorsAreSmall) {
   EXPECT_NEAR(robust / plain, 1, 1e-3);
 }
 
-TEST(RobustLoss, ALargeErrorPullsLessThanASmallOne) {
-  const auto pull = [](double error) {
+TEST(RobustLoss, ALargeErrorHasASmallerGradientThanASmallOne) {
+  const auto gradient = [](double error) {
     const torch::Tensor target = torch::zeros({1, 3}, torch::kDouble);
     const torch::Tensor predicted = torch::full({1, 3}, error, torch::kDouble).requires_grad_(true);
     ColorLoss(predicted, target, {}, RobustOptions()).backward();
     return predicted.grad()[0][0].item<double>();
   };
-  EXPECT_LT(pull(0.8), 0.1 * pull(0.05));
-  EXPECT_GT(pull(0.8), 0);
+  EXPECT_LT(gradient(0.8), 0.1 * gradient(0.05));
+  EXPECT_GT(gradient(0.8), 0);
 }
 
-TEST(RobustLoss, IsTheOrdinaryLossAtTheBeginningOfATraining) {
+TEST(RobustLoss, IsTheOrdinaryLossAtTheBeginningOfTraining) {
   const RobustOptions options;
   EXPECT_NEAR(options.At(0).scale, 100 * options.scale, 1e-9);
   EXPECT_NEAR(options.At(0.5).scale, options.scale, 1e-12);
@@ -47,20 +47,20 @@ TEST(RobustLoss, GradientsMatchCentralDifferences) {
   }
 }
 
-TEST(RobustLoss, OfAnEndlessScaleChangesNoBit) {
-  test::TwoEngines off, endless;
-  endless.robust = RobustOptions{1e300};
+TEST(RobustLoss, WithAHugeScaleChangesNoBit) {
+  test::TwoEngines off, huge;
+  huge.robust = RobustOptions{1e300};
   off.Make(50);
-  endless.Make(50);
+  huge.Make(50);
   for (const auto engine : {&test::TwoEngines::libtorch, &test::TwoEngines::fused}) {
     const StepResult a = (off.*engine)->AccumulateGradients(off.batch);
-    const StepResult b = (endless.*engine)->AccumulateGradients(endless.batch);
+    const StepResult b = (huge.*engine)->AccumulateGradients(huge.batch);
     EXPECT_EQ(a.loss, b.loss);
     EXPECT_EQ(a.ray_error, b.ray_error);
   }
 }
 
-TEST(RobustLoss, MeansTheSameInBothEngines) {
+TEST(RobustLoss, IsTheSameInBothEngines) {
   for (const LossKind kind : {LossKind::kHuber, LossKind::kMse}) {
     test::TwoEngines e;
     e.loss.kind = kind;

@@ -26,7 +26,7 @@ MarchOptions Bounded() {
   return march;
 }
 
-TEST(Bounded, RaysAreCutToTheUnitBall) {
+TEST(Bounded, RaysAreClippedToTheUnitBall) {
   const auto range = [](const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
     return RangeOfRay(OneRay(origin, direction), 0, Bounded());
   };
@@ -36,8 +36,8 @@ TEST(Bounded, RaysAreCutToTheUnitBall) {
   const auto inside = range({0, 0, 0}, {0, 1, 0});
   EXPECT_FLOAT_EQ(inside.near, 0.05f);
   EXPECT_FLOAT_EQ(inside.far, 1);
-  const auto aside = range({-3, 0.6f, 0}, {1, 0, 0});
-  EXPECT_NEAR(aside.far - aside.near, 1.6, 1e-6);
+  const auto off_centre = range({-3, 0.6f, 0}, {1, 0, 0});
+  EXPECT_NEAR(off_centre.far - off_centre.near, 1.6, 1e-6);
   for (const auto& missed : {range({-3, 1.1f, 0}, {1, 0, 0}), range({3, 0, 0}, {1, 0, 0})}) {
     EXPECT_EQ(missed.near, missed.far);
   }
@@ -59,26 +59,26 @@ TEST(Bounded, NothingIsSampledOutside) {
   const RayBatch ray = OneRay({-3, 0.2f, 0}, {1, 0, 0});
   EqualIntervals(ray, 0, e.march, edges);
   const auto [near, far] = RangeOfRay(ray, 0, e.march);
-  // Inside the ball nothing is contracted: equal lengths but for the ends, which jitter moves.
+  // Inside the ball nothing is contracted: equal lengths, except at the ends, which jitter moves.
   for (int i = 1; i < 7; ++i) EXPECT_NEAR(edges[i + 1] - edges[i], (far - near) / 8, 3e-3);
   EXPECT_EQ(edges.front(), near);
   EXPECT_EQ(edges.back(), far);
 }
 
-TEST(Bounded, MeansTheSameInBothEngines) {
+TEST(Bounded, IsTheSameInBothEngines) {
   for (const bool with_proposal : {false, true}) {
     test::TwoEngines e;
     e.march = Bounded();
     e.march.steps_per_unit = 24;
     e.Make(50, with_proposal);
-    // Some rays miss the ball, on any side of it and farther out than contracted space reaches.
+    // Some rays miss the ball, on each side of it, from far away.
     for (int r = 0; r < 50; r += 7)
       e.batch.rays.origin[3 * r + r % 3] += r % 2 == 0 ? 3.0f : -30.0f;
     e.ExpectTheSame();
   }
 }
 
-TEST(Bounded, MattersNotWhereRaysEndInsideAnyway) {
+TEST(Bounded, ChangesNothingWhereRaysEndInsideTheBall) {
   test::TwoEngines unbounded, bounded;
   unbounded.march.far_distance = bounded.march.far_distance = 0.5;
   bounded.march.unbounded = false;
@@ -90,7 +90,7 @@ TEST(Bounded, MattersNotWhereRaysEndInsideAnyway) {
             bounded.fused->Render(bounded.batch.rays).rgb);
 }
 
-TEST(Bounded, IsWhatTheEffectSays) {
+TEST(Bounded, FollowsTheEffect) {
   EXPECT_TRUE(LoadConfig("base", {}).march.unbounded);
   EXPECT_FALSE(LoadConfig("base", {"effects.unbounded=null"}).march.unbounded);
   EXPECT_FALSE(ConfigFromJson(JsonFromConfig(LoadConfig("base", {"effects.unbounded=null"})), "x")

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-TEST(ViewDependence, LeftAwayLeavesNoDependenceOnTheDirection) {
+TEST(ViewDependence, TurnedOffColoursDoNotDependOnTheDirection) {
   test::TwoEngines e;
   e.color_model = ColorModel::kDiffuse;
   e.Make(1);
@@ -27,8 +27,8 @@ TEST(ViewDependence, LeftAwayLeavesNoDependenceOnTheDirection) {
   EXPECT_TRUE(radiance(1, 0, 0).equal(radiance(0, 0.6f, -0.8f)));
 }
 
-// The neutral parameter: weights of 0 for the direction, all others the same.
-TEST(ViewDependence, WithoutWeightGivesTheDiffuseImage) {
+// The neutral parameter: weights of 0 for the direction.
+TEST(ViewDependence, WithZeroWeightsGivesTheDiffuseImage) {
   test::TwoEngines by_direction, diffuse;
   diffuse.color_model = ColorModel::kDiffuse;
   by_direction.Make(50);
@@ -44,13 +44,13 @@ TEST(ViewDependence, WithoutWeightGivesTheDiffuseImage) {
     const std::vector<float> a = (by_direction.*engine)->Render(by_direction.batch.rays).rgb;
     const std::vector<float> b = (diffuse.*engine)->Render(diffuse.batch.rays).rgb;
     ASSERT_EQ(a.size(), b.size());
-    // Exactly; but OpenBLAS sums a longer row, zeros and all, in another order.
+    // Exact in the fused engine; OpenBLAS sums a longer row in another order.
     const float bound = engine == &test::TwoEngines::fused ? 0.0f : 1e-6f;
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], bound);
   }
 }
 
-TEST(ViewDependence, LeftAwayCostsNoWeight) {
+TEST(ViewDependence, TurnedOffHasNoWeights) {
   const auto weights = [](const char* effect) {
     const Model model = MakeModel(LoadConfig("base", {effect}), SceneFacts());
     std::int64_t count = 0;
@@ -61,15 +61,15 @@ TEST(ViewDependence, LeftAwayCostsNoWeight) {
             16 * 64);
 }
 
-TEST(ViewDependence, LeftAwayMeansTheSameInBothEngines) {
+TEST(ViewDependence, TurnedOffIsTheSameInBothEngines) {
   test::TwoEngines e;
   e.color_model = ColorModel::kDiffuse;
   e.Make(50);
   e.ExpectTheSame();
 }
 
-// A ball that shows the light from which it is seen.
-TEST(ViewDependence, IsWorthADecibelAndMoreForAGlossyBall) {
+// A mirroring ball.
+TEST(ViewDependence, GainsADecibelForAGlossyBall) {
   const auto seen = [](const Vector3f& origin, const Vector3f& direction) -> Vector4f {
     const float middle = -origin.dot(direction);
     const Vector3f nearest = origin + middle * direction;

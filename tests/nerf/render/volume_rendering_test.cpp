@@ -30,7 +30,7 @@ struct Batch {
     return RenderVolume(ray_begin, sigma, radiance, dt, t, background);
   }
 
-  // A scalar that looks at every output.
+  // A scalar that depends on every output.
   torch::Tensor Loss() const {
     const VolumeRendering out = Render();
     return out.rgb.square().sum() + 0.3 * out.opacity.square().sum() + 0.1 * out.depth.sum();
@@ -71,9 +71,9 @@ TEST(RenderVolume, TheNumberOfThreadsChangesNothing) {
   EXPECT_TRUE(torch::equal(one.radiance.grad(), three.radiance.grad()));
 }
 
-TEST(RenderVolume, RefusesSamplesOutOfOrderWithTheirRay) {
+TEST(RenderVolume, SamplesOutOfOrderAreReportedWithTheirRay) {
   const double nan = std::nan("");
-  const auto refusal = [](torch::Tensor Batch::*values, std::int64_t sample, double value) {
+  const auto rejection = [](torch::Tensor Batch::*values, std::int64_t sample, double value) {
     Batch batch;  // rays of 5, 0 and 7 samples
     (batch.*values)[sample] = value;
     try {
@@ -83,14 +83,15 @@ TEST(RenderVolume, RefusesSamplesOutOfOrderWithTheirRay) {
     }
     return std::string("no error");
   };
-  EXPECT_THAT(refusal(&Batch::dt, 6, -0.1), testing::HasSubstr("ray 2"));
-  EXPECT_THAT(refusal(&Batch::dt, 4, nan), testing::HasSubstr("ray 0"));
-  EXPECT_THAT(refusal(&Batch::t, 3, 0.0), testing::HasSubstr("ray 0: t does not rise at sample 3"));
-  EXPECT_THAT(refusal(&Batch::t, 5, nan), testing::HasSubstr("ray 2"));
-  EXPECT_THAT(refusal(&Batch::t, 0, -5.0), testing::HasSubstr("no error"));
+  EXPECT_THAT(rejection(&Batch::dt, 6, -0.1), testing::HasSubstr("ray 2"));
+  EXPECT_THAT(rejection(&Batch::dt, 4, nan), testing::HasSubstr("ray 0"));
+  EXPECT_THAT(rejection(&Batch::t, 3, 0.0),
+              testing::HasSubstr("ray 0: t decreases or is NaN at sample 3"));
+  EXPECT_THAT(rejection(&Batch::t, 5, nan), testing::HasSubstr("ray 2"));
+  EXPECT_THAT(rejection(&Batch::t, 0, -5.0), testing::HasSubstr("no error"));
 }
 
-TEST(RenderVolume, RefusesShapesThatDoNotFit) {
+TEST(RenderVolume, RejectsShapesThatDoNotMatch) {
   Batch batch;
   batch.dt = batch.dt.slice(0, 0, 5);
   EXPECT_THROW(batch.Render(), c10::Error);

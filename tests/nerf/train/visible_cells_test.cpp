@@ -33,9 +33,9 @@ bool IsKept(const OccupancyGrid& grid, const Eigen::Vector3f& x_in_normalized) {
   return grid.Occupied(UnitCubeFromContracted(Contract(x_in_normalized)));
 }
 
-// A point that a pixel shows must stay: what is culled can never be learned again. Up to where cells
-// lie wholly in contracted space; of those that its border cuts, the ones with their middle outside
-// are emptied.
+// A point that a pixel shows must stay: what is culled can never be learned again. Up to where
+// cells lie wholly in contracted space; of those that its border cuts, the ones with their middle
+// outside are emptied.
 TEST(VisibleCells, EveryPointInAPictureIsKept) {
   std::vector<View> views;
   for (const Eigen::Isometry3d& pose : test::CameraRing(5, 2.0, 0.7)) {
