@@ -11,6 +11,7 @@
 #include "nerf/config/config.h"
 #include "nerf/effects/inspection.h"
 #include "nerf/field/pose_refinement.h"
+#include "nerf/scene/data_plan.h"
 #include "nerf/scene/dataset.h"
 #include "nerf/train/trainer.h"
 #include "sfm/colmap_runner.h"

@@ -12,6 +12,7 @@
 #include "nerf/effects/depth_supervision.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/scene/camera.h"
+#include "nerf/scene/splits.h"
 #include "sfm/colmap_model.h"
 #include "sfm/colmap_text_writer.h"
 #include "sfm/masks.h"
