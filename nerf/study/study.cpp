@@ -119,7 +119,7 @@ Study::Photographs& Study::Read(const Config& config) {
 void Study::DecideEffects() {
   EffectDecisions decisions(scene_.inspection, {});
   decided_ = decisions.Assignments();
-  const double seconds = kMiddlePart * options_.budget;
+  const double seconds = std::max(1.0, kMiddlePart * options_.budget);
   const StudySetting balanced = {"effects", "balanced", {}, 1};
   Photographs& photographs = Read(ConfigOf(balanced, seconds));
   if (photographs.facts.has_alpha) decisions.DisableBackgroundForAlpha(listener_);
