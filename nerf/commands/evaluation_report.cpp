@@ -64,8 +64,8 @@ nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& all, i
                        {"psnr_with", m.with.psnr},
                        {"psnr_without", m.without.psnr},
                        {"on_halves", m.on_halves},
-                       {"seconds_a_step_with", m.with.seconds_a_step},
-                       {"seconds_a_step_without", m.without.seconds_a_step},
+                       {"seconds_a_step_with", m.with.seconds_per_step},
+                       {"seconds_a_step_without", m.without.seconds_per_step},
                        {"megabytes", m.with.megabytes - m.without.megabytes}});
   }
   return {{"steps", steps}, {"effects", effects}};
@@ -81,7 +81,7 @@ void PrintMeasurements(const std::vector<EffectMeasurement>& all, int steps) {
   for (const EffectMeasurement& m : all) {
     fmt::print("{:<17} {:>8.2f} {:>9.2f} {:>+8.2f} {:>+14.1f} % {:>+9.2f}\n", m.effect->name,
                m.with.psnr, m.without.psnr, m.with.psnr - m.without.psnr,
-               100 * (m.with.seconds_a_step / m.without.seconds_a_step - 1),
+               100 * (m.with.seconds_per_step / m.without.seconds_per_step - 1),
                m.with.megabytes - m.without.megabytes);
   }
   fmt::print(
