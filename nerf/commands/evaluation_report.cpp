@@ -50,9 +50,10 @@ void PrintEvaluation(const Evaluation& evaluation) {
   };
   for (const ViewScore& s : evaluation.scores) row(s);
   row(evaluation.Mean());
-  fmt::print("{:.1f} samples a ray, {:.0f} MB at most\n", cost.SamplesPerRay(), PeakMegabytes());
-  if (cost.seconds.Sum() == 0) return;  // of a renderer that does not measure
-  fmt::print("of a frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, rest {:.2f} s\n",
+  fmt::print("{:.1f} samples per ray, {:.0f} MB peak memory\n", cost.SamplesPerRay(),
+             PeakMegabytes());
+  if (cost.seconds.Sum() == 0) return;  // the renderer does not time its stages
+  fmt::print("per frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, rest {:.2f} s\n",
              cost.PerView(cost.seconds.sampling), cost.PerView(cost.seconds.encoding),
              cost.PerView(cost.seconds.networks), cost.PerView(cost.seconds.compositing));
 }
@@ -73,11 +74,11 @@ nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& all, i
 
 void PrintMeasurements(const std::vector<EffectMeasurement>& all, int steps) {
   if (all.empty()) {
-    fmt::print("the run simulates no effect that could be disabled\n");
+    fmt::print("the run simulates no effect that can be measured\n");
     return;
   }
   fmt::print("{:<17} {:>8} {:>9} {:>8} {:>16} {:>9}\n", "effect", "with dB", "without", "gain dB",
-             "time of a step", "memory MB");
+             "time per step", "memory MB");
   for (const EffectMeasurement& m : all) {
     fmt::print("{:<17} {:>8.2f} {:>9.2f} {:>+8.2f} {:>+14.1f} % {:>+9.2f}\n", m.effect->name,
                m.with.psnr, m.without.psnr, m.with.psnr - m.without.psnr,
@@ -85,8 +86,8 @@ void PrintMeasurements(const std::vector<EffectMeasurement>& all, int steps) {
                m.with.megabytes - m.without.megabytes);
   }
   fmt::print(
-      "after {} steps, on the held-out photographs, each at its own exposure; more training may "
-      "change it\n",
+      "after {} steps, on held-out photographs, each at its fitted exposure; gains can change with "
+      "longer training\n",
       steps);
   for (const EffectMeasurement& m : all) {
     if (!m.on_halves) continue;

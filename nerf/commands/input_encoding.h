@@ -7,7 +7,7 @@
 
 namespace nerf {
 
-// --encoding auto|srgb|linear: what the numbers of the given images mean.
+// Adds --encoding auto|srgb|linear: the encoding of the input images.
 inline void AddInputEncodingOption(CLI::App& command, InputEncoding& encoding,
                                    const std::string& meaning) {
   AddChoiceOption<InputEncoding>(command, "--encoding", encoding,

@@ -41,7 +41,7 @@ nlohmann::json JsonFrom(const PosedImages& posed, const Inspection& inspection) 
   return {{"verdicts", verdicts}, {"exposure_stops", exposures}};
 }
 
-// Plain photographs, whose poses are yet to be found.
+// Plain photographs, before their poses are found.
 PosedImages WithoutPoses(const std::filesystem::path& folder) {
   PosedImages photographs;
   photographs.source = folder;
@@ -63,14 +63,14 @@ void RunInspect(const InspectArguments& arguments) {
   sfm::FindMasks(posed);
   Inspection inspection;
   if (has_poses) {
-    ProgressLine progress("looking", static_cast<std::int64_t>(posed.images.size()));
+    ProgressLine progress("inspecting", static_cast<std::int64_t>(posed.images.size()));
     inspection = Inspect(posed, [&](int read) { progress.Update(read); });
     progress.Finish();
   } else {
     inspection = InspectPhotographs(posed);
     spdlog::warn(
-        "{}: plain photographs have no poses yet, which tell most; nerf poses finds them, and "
-        "nerf train looks again when it has them",
+        "{}: plain photographs have no poses yet, so most effects are undecided; nerf poses finds "
+        "the poses, and nerf train inspects again with them",
         arguments.input);
   }
   if (!inspection.warning.empty()) spdlog::warn("{}", inspection.warning);
@@ -91,15 +91,15 @@ void AddInspectCommand(CLI::App& app) {
   const auto arguments = std::make_shared<InspectArguments>();
   command
       ->add_option("input", arguments->input,
-                   "COLMAP project (its sparse points tell most), transforms.json, LLFF folder, or "
-                   "photographs, which tell least")
+                   "COLMAP project (with sparse points, the most evidence), transforms.json, LLFF "
+                   "folder, or photographs (the least evidence)")
       ->required();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");
   command->add_option(
       "--picture", arguments->picture,
-      "FILE.png to draw: exposure of each photograph, and how much "
-      "points change with the angle of the view, which rises where things are glossy");
+      "write a plot to FILE.png: the exposure of each photograph, and the colour change of points "
+      "with the viewing angle, which increases for glossy surfaces");
   command->footer(
       "Examples:\n"
       "  nerf inspect photos/fox/colmap --picture fox.png\n"

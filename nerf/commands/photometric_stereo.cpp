@@ -48,10 +48,10 @@ void RunPhotometricStereo(const StereoArguments& arguments) {
   WritePhotometricFolder(folder, maps);
   const double share = 100.0 / std::max(1, maps.pixels);
   fmt::print(
-      "{}: {} images, taken as {}, lights from {}\n"
-      "{} pixels: {:.1f} % by least squares, {:.1f} % robust, {:.1f} % without an answer\n"
-      "residual {:.2f} % of the albedo in the median; {:.1f} s\n"
-      "normals, albedo, residual, depth.ply and relit.png are in {}\n",
+      "{}: {} images, encoding {}, lights from {}\n"
+      "{} pixels: {:.1f} % by least squares, {:.1f} % robust, {:.1f} % unsolved\n"
+      "median residual {:.2f} % of the albedo; {:.1f} s\n"
+      "wrote normals, albedo, residual, depth.ply and relit.png to {}\n",
       capture.name, capture.images.size(), encoding == InputEncoding::kSrgb ? "sRGB" : "linear",
       capture.lights_from, maps.pixels,
       share * (maps.pixels - maps.robust_pixels - maps.unknown_pixels), share * maps.robust_pixels,
@@ -66,49 +66,49 @@ void AddPhotometricStereoCommand(CLI::App& app) {
       "photometric-stereo", "Normals and albedo from photographs under one light at a time");
   command
       ->add_option("folder", arguments->folder,
-                   "images of one camera, one a light; with lights.txt or a folder chrome")
+                   "images of one camera, one per light; with lights.txt or a folder chrome")
       ->required();
-  command->add_option("-o,--output", arguments->output, "folder of the results; NAME-normals");
+  command->add_option("-o,--output", arguments->output, "output folder [NAME-normals]");
   command
       ->add_option("--lights", arguments->capture.lights,
-                   "a file with a direction a line; chrome: by the ball's highlights; auto: "
-                   "lights.txt, else the ball")
+                   "a file with one direction per line; chrome: from highlights on a chrome ball; "
+                   "auto: lights.txt if it exists, else chrome")
       ->capture_default_str();
   AddInputEncodingOption(*command, arguments->capture.encoding,
-                         "of the images: srgb, linear, or auto: of 8 bits that in which least "
-                         "squares explain them better; all else is linear");
+                         "of the images: srgb, linear, or auto: for 8 bits the one with the "
+                         "smaller least-squares residual, else linear");
   AddChoiceOption<StereoMethod>(
       *command, "--method", arguments->stereo.method,
       {{"auto", StereoMethod::kAuto},
        {"least-squares", StereoMethod::kLeastSquares},
        {"robust", StereoMethod::kRobust}},
-      "least-squares, robust (against shadows and highlights), or auto: robust where "
-      "least squares leaves more than --residual");
+      "least-squares, robust (against shadows and highlights), or auto: robust where the "
+      "least-squares residual exceeds --residual");
   command
       ->add_option(
           "--residual", arguments->stereo.largest_residual,
-          "of least squares, relative to the albedo, beyond which auto is robust (as it is "
-          "where a light leaves a pixel in shadow)")
+          "least-squares residual, relative to the albedo, above which auto uses the robust "
+          "method (it also does for pixels in the shadow of a light)")
       ->capture_default_str();
   command
       ->add_option("--tolerance", arguments->stereo.tolerance,
-                   "of the robust method: share of a pixel's brightest observation beyond which a "
-                   "residual is a shadow or a highlight")
+                   "robust method: residual, as a fraction of a pixel's brightest observation, "
+                   "above which an observation is a shadow or a highlight")
       ->capture_default_str();
   command
       ->add_option("--dark", arguments->stereo.dark,
-                   "share of a pixel's brightest observation below which it lies in shadow")
+                   "fraction of a pixel's brightest observation below which it is in shadow")
       ->capture_default_str();
   command
       ->add_option("--memory-mb", arguments->memory_mb,
-                   "for the observations of pixels; where they are more, images are read again "
-                   "for each part of them")
+                   "limit for pixel observations; above it, pixels are processed in parts and "
+                   "images are read once per part")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
-      "lights.txt: a line an image, \"x y z\", \"x y z intensity\" or \"x y z r g b\"; x right, y "
-      "up,\n"
-      "z towards the camera. An image with \"mask\" in its name marks the subject in white.\n"
+      "lights.txt has one line per image: \"x y z\", \"x y z intensity\" or \"x y z r g b\"; x "
+      "right,\n"
+      "y up, z towards the camera. An image with \"mask\" in its name is white on the subject.\n"
       "Examples:\n"
       "  nerf photometric-stereo photometric/cat\n"
       "  nerf photometric-stereo photometric/cat --lights chrome -o out/cat\n"

@@ -41,7 +41,7 @@ void PrintReport(const sfm::ColmapReport& report, const fs::path& transforms) {
     row("seconds, " + step, fmt::format("{:.1f}", seconds));
     total += seconds;
   }
-  row("seconds, in all", fmt::format("{:.1f}", total));
+  row("seconds, total", fmt::format("{:.1f}", total));
   row("poses", transforms.string());
 }
 
@@ -54,8 +54,9 @@ void RunPoses(const PosesArguments& arguments) {
   const fs::path transforms = output / "transforms.json";
   const fs::path workspace = output / "colmap";
   if (fs::exists(transforms) && !fs::exists(workspace / "steps.json")) {
-    throw InputError("{}: is there already, and not from nerf poses; give another -o",
-                     transforms.string());
+    throw InputError(
+        "{}: already exists and was not written by nerf poses; choose another folder with -o",
+        transforms.string());
   }
   sfm::ColmapReport report;
   const PosedImages posed =
@@ -73,26 +74,25 @@ void AddPosesCommand(CLI::App& app) {
   sfm::ColmapOptions& colmap = arguments->colmap;
   command->add_option("FOLDER", arguments->folder, "Folder of photographs")->required();
   command->add_option("-o,--output", arguments->output,
-                      "Where transforms.json and colmap/ go; runs/<name>-poses if not given");
+                      "Folder for transforms.json and colmap/ [runs/NAME-poses]");
   command
       ->add_option("--matcher", colmap.matcher,
-                   "Which pairs are compared: auto, exhaustive (all), sequential (neighbours),\n"
-                   "guided (those that look alike)")
+                   "Image pairs to match: auto, exhaustive (all), sequential (neighbours),\n"
+                   "guided (similar images)")
       ->capture_default_str();
-  command->add_option("--camera-model", colmap.camera_model, "COLMAP's name of the lens model")
+  command->add_option("--camera-model", colmap.camera_model, "COLMAP camera model")
       ->capture_default_str();
   command
       ->add_option("--max-image-size", colmap.max_image_size,
-                   "Longer side, in pixels, at which features are found")
+                   "Largest side of an image for feature extraction, pixels")
       ->capture_default_str();
   command
       ->add_option("--max-features", colmap.max_num_features,
-                   "Features a photo; matching takes time with its square")
+                   "Features per photograph; matching time grows with its square")
       ->capture_default_str();
-  command->add_option("--threads", colmap.threads, "Threads; 0 takes all cores")
-      ->capture_default_str();
+  command->add_option("--threads", colmap.threads, "0: all cores")->capture_default_str();
   command->footer(
-      "Run it again to go on after an interruption; finished steps are skipped.\n"
+      "After an interruption, the same command continues; finished steps are skipped.\n"
       "Examples:\n"
       "  nerf poses photos/fox\n"
       "  nerf poses photos/fox -o fox-poses --max-image-size 3200\n"

@@ -30,8 +30,8 @@ namespace fs = std::filesystem;
 
 constexpr double kFramesPerSecond = 24;
 constexpr std::size_t kFewestLights = 3;
-constexpr double kMostStops = 64;         // beyond it floats overflow
-constexpr double kWorthAWarning = 0.001;  // of the environment's power
+constexpr double kMaxStops = 64;            // beyond it floats overflow
+constexpr double kOmittedToReport = 0.001;  // share of the environment's power
 
 struct RelightArguments {
   std::string capture;
@@ -52,9 +52,8 @@ struct RelightArguments {
     if (!(std::abs(rotate) <= 360)) {
       throw InputError("--rotate is {}: choose -360 to 360 degrees", rotate);
     }
-    if (exposure && !(std::abs(*exposure) <= kMostStops)) {
-      throw InputError("--exposure is {}: choose -{} to {} stops", *exposure, kMostStops,
-                       kMostStops);
+    if (exposure && !(std::abs(*exposure) <= kMaxStops)) {
+      throw InputError("--exposure is {}: choose -{} to {} stops", *exposure, kMaxStops, kMaxStops);
     }
     if (memory_mb < 1) throw InputError("--memory-mb is {}: choose 1 or more", memory_mb);
     if (frames > 0 && !FfmpegIsInstalled()) {
@@ -63,17 +62,17 @@ struct RelightArguments {
   }
 };
 
-// A map's file, or a light's name: the same from all sides.
+// Reads a map from a file, or makes a uniform one from the name of a light.
 EnvironmentMap OpenEnvironment(const std::string& name) {
   if (!fs::exists(name)) {
     if (const auto color = ColorOfLight(name)) return EnvironmentMap::Uniform(*color);
-    throw InputError("--environment {}: neither a file nor a light's name; names are {}", name,
+    throw InputError("--environment {}: neither a file nor the name of a light; names are {}", name,
                      kLightNames);
   }
   return EnvironmentMap::Read(name);
 }
 
-// Before anything is summed: a wrong file is told at once.
+// Read before relighting, so that an invalid file is reported early.
 Image OpenTruth(const fs::path& file, const OlatCapture& capture) {
   Image truth = ReadLinearImage(file, InputEncoding::kAuto);
   if (truth.width == capture.width && truth.height == capture.height) return truth;
@@ -104,21 +103,23 @@ void RunRelight(const RelightArguments& arguments) {
   RefuseBlackCapture(capture, arguments.olat.encoding);
   const LightVoronoi cells(capture.lights,
                            CellRows(static_cast<int>(capture.lights.size()), map.height()));
-  double left_out = 0;
+  double omitted = 0;
   std::vector<std::vector<Color>> weights;
   const int frames = std::max(1, arguments.frames);
   for (int f = 0; f < frames; ++f) {
     const double degrees = arguments.rotate + 360.0 * f / frames;
     weights.push_back(RelightWeights(capture, cells, map, degrees));
-    left_out = std::max(left_out, cells.ShareLeftOut(map, degrees));
+    omitted = std::max(omitted, cells.ShareLeftOut(map, degrees));
   }
-  if (left_out > kWorthAWarning) {
-    spdlog::warn("{}{:.1f} % of {}'s light comes from where the capture has no lights: left out",
-                 frames > 1 ? "up to " : "", 100 * left_out, arguments.environment);
+  if (omitted > kOmittedToReport) {
+    spdlog::warn(
+        "{}: {}{:.1f} % of the light is from directions where the capture has no lights, and is "
+        "omitted",
+        arguments.environment, frames > 1 ? "up to " : "", 100 * omitted);
   }
   const fs::path frame_folder = folder / "frames";
   MakeOutputFolder(arguments.frames > 0 ? frame_folder : folder);
-  // One exposure for the whole film: by its first frame.
+  // The first frame determines the exposure of the whole film.
   std::optional<double> stops = arguments.exposure;
   std::optional<double> psnr;
   const bool finished = Relight(
@@ -136,19 +137,19 @@ void RunRelight(const RelightArguments& arguments) {
         }
       });
   if (!finished) {
-    fmt::print("stopped; the pictures that are done are in {}\n", folder.string());
+    fmt::print("stopped; finished images are in {}\n", folder.string());
     throw CLI::RuntimeError(130);
   }
   if (arguments.frames > 0) {
     WriteVideo(frame_folder, frames, kFramesPerSecond, folder / "rotation.mp4");
   }
   fmt::print(
-      "{}: {} lights{}, {} x {} pixels, {} picture{} at {:+.2f} stops in {:.1f} s\n"
-      "relit.png and relit.exr (linear){} are in {}\n",
+      "{}: {} lights{}, {} x {} pixels, {} image{} at {:+.2f} stops in {:.1f} s\n"
+      "wrote relit.png and relit.exr (linear){} to {}\n",
       capture.name, capture.lights.size(), cells.on_a_grid() ? " on a grid" : "", capture.width,
       capture.height, frames, frames == 1 ? "" : "s", *stops, watch.Seconds(),
       arguments.frames > 0 ? " and rotation.mp4" : "", folder.string());
-  if (psnr) fmt::print("{:.2f} dB from {}\n", *psnr, arguments.truth);
+  if (psnr) fmt::print("PSNR {:.2f} dB against {}\n", *psnr, arguments.truth);
 }
 
 }  // namespace
@@ -157,33 +158,34 @@ void AddRelightCommand(CLI::App& app) {
   auto arguments = std::make_shared<RelightArguments>();
   CLI::App* command = app.add_subcommand(
       "relight",
-      "A light-stage capture under any environment: a picture, or its rotation as a film");
+      "Relights a light-stage capture under an environment map: an image, or a film of its "
+      "rotation");
   command
       ->add_option("capture", arguments->capture,
-                   "a folder with an image for each light, and lights.txt or a folder chrome")
+                   "folder with one image per light, and lights.txt or a folder chrome")
       ->required();
   command
       ->add_option("--environment", arguments->environment,
-                   std::string("an HDR or EXR map, twice as wide as high, or a light's name: ") +
+                   std::string("HDR or EXR map, twice as wide as high, or the name of a light: ") +
                        kLightNames)
       ->required();
-  command->add_option("-o,--output", arguments->output, "folder of the results; NAME-relit");
+  command->add_option("-o,--output", arguments->output, "output folder [NAME-relit]");
   command
       ->add_option("--rotate", arguments->rotate,
-                   "degrees by which the environment is turned about the vertical")
+                   "rotate the environment about the vertical, degrees")
       ->capture_default_str();
   command->add_option("--frames", arguments->frames,
-                      "of a film in which it turns round once (with ffmpeg)");
+                      "frames of a film of one full rotation (needs ffmpeg)");
   command->add_option("--exposure", arguments->exposure,
-                      "stops of the PNG; default: bright parts just below white");
+                      "exposure of the PNG, stops [bright parts just below white]");
   command->add_option("--truth", arguments->truth,
-                      "a picture directly under the environment, to tell the PSNR against");
+                      "image rendered directly under the environment, for the PSNR");
   command->add_option("--lights", arguments->olat.lights, "a light file, chrome, or auto")
       ->capture_default_str();
   AddInputEncodingOption(*command, arguments->olat.encoding,
-                         "of the images: srgb, linear, or auto: 8 bits are srgb, all else is "
-                         "linear");
-  command->add_option("--memory-mb", arguments->memory_mb, "for pixels")->capture_default_str();
+                         "of the images: srgb, linear, or auto: 8 bits are srgb, others linear");
+  command->add_option("--memory-mb", arguments->memory_mb, "limit for pixels")
+      ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "Examples:\n"

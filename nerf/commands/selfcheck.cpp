@@ -13,7 +13,7 @@
 namespace nerf {
 namespace {
 
-constexpr int kExitWrongHere = 1;
+constexpr int kExitFailed = 1;
 
 void PrintJson(const std::vector<CaseResult>& results, bool passed) {
   nlohmann::json rows = nlohmann::json::array();
@@ -24,15 +24,15 @@ void PrintJson(const std::vector<CaseResult>& results, bool passed) {
                           {"bound", c.bound},
                           {"level", result.level},
                           {"passed", result.Passed()}};
-    // JSON has no infinity: a claim that does not hold has no error.
+    // JSON has no infinity: a failed claim without a measured error has null.
     row["error"] = std::isfinite(result.error) ? nlohmann::json(result.error) : nlohmann::json();
     rows.push_back(row);
   }
   fmt::print("{}\n", nlohmann::json{{"passed", passed}, {"cases", rows}}.dump(2));
 }
 
-// A line a case, with its error at each SIMD level; of cases without vector code in the first
-// column.
+// Prints a line per case, with its error at each SIMD level; the first column is for cases without
+// SIMD code.
 void PrintTable(const std::vector<CaseResult>& results) {
   std::vector<std::string> levels = {""};
   for (const CaseResult& result : results) {
@@ -71,20 +71,20 @@ void RunSelfcheck(bool json) {
     PrintTable(results);
     fmt::print("{} of {} pass\n", std::ssize(results) - failed, results.size());
   }
-  if (failed > 0) throw CLI::RuntimeError(kExitWrongHere);
+  if (failed > 0) throw CLI::RuntimeError(kExitFailed);
 }
 
 }  // namespace
 
 void AddSelfcheckCommand(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "selfcheck", "is the arithmetic right on this processor? in under a minute");
+  auto* command =
+      app.add_subcommand("selfcheck", "Checks the numerics on this processor, in under a minute");
   const auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "print JSON, with what each case measures");
+  command->add_flag("--json", *json, "print JSON, with a description of each measurement");
   command->footer(
-      "Measures the hard cases of the numerics against slow, exact forms, on every SIMD level "
-      "that\n"
-      "this processor has. Exit status 1 where one is out of its bound.\n"
+      "Compares the hard cases of the numerics with slow, exact reference code, at every SIMD "
+      "level\n"
+      "of this processor. Exit status 1 if an error exceeds its bound.\n"
       "Examples:\n"
       "  nerf selfcheck\n"
       "  nerf selfcheck --json > selfcheck.json");

@@ -12,13 +12,13 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(SelfcheckCommand, PrintsALineACaseAndPassesHere) {
+TEST(SelfcheckCommand, PrintsALinePerCaseAndPasses) {
   const auto result = test::RunNerf("selfcheck");
   EXPECT_EQ(result.exit_status, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("ThinFogKeepsItsOpacity"));
   EXPECT_THAT(result.output, HasSubstr("BothEnginesMeanTheSame"));
   EXPECT_THAT(result.output, Not(HasSubstr("FAIL")));
-  // The level that the program takes by itself has a column.
+  // The level that the program uses by default has a column.
   EXPECT_THAT(result.output, HasSubstr(kernels::SimdLevels().front().name));
 }
 
@@ -36,7 +36,7 @@ TEST(SelfcheckCommand, JsonHasARowForEachLevel) {
   EXPECT_GE(levels, 1);
 }
 
-TEST(SelfcheckCommand, RefusesAFlagThatItDoesNotHave) {
+TEST(SelfcheckCommand, RejectsAnUnknownFlag) {
   EXPECT_EQ(test::RunNerf("selfcheck --quick").exit_status, 2);
 }
 
