@@ -112,10 +112,8 @@ void RunRelight(const RelightArguments& arguments) {
     omitted = std::max(omitted, cells.ShareLeftOut(map, degrees));
   }
   if (omitted > kOmittedToReport) {
-    spdlog::warn(
-        "{}: {}{:.1f} % of the light is from directions where the capture has no lights, and is "
-        "omitted",
-        arguments.environment, frames > 1 ? "up to " : "", 100 * omitted);
+    spdlog::warn("{}: {}{:.1f} % of the light is from directions without lights and is omitted",
+                 arguments.environment, frames > 1 ? "up to " : "", 100 * omitted);
   }
   const fs::path frame_folder = folder / "frames";
   MakeOutputFolder(arguments.frames > 0 ? frame_folder : folder);

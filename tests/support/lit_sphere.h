@@ -11,7 +11,8 @@
 
 namespace nerf::test {
 
-// Directions to `count` lights on a ring and a half about z, up to `degrees` off it: in no plane.
+// Directions to `count` lights around z, two thirds at an angle of `degrees` to it and one third at
+// half of that, so that they are not coplanar.
 inline std::vector<DirectionalLight> RingOfLights(int count, double degrees) {
   std::vector<DirectionalLight> lights;
   for (int i = 0; i < count; ++i) {
@@ -23,16 +24,16 @@ inline std::vector<DirectionalLight> RingOfLights(int count, double degrees) {
   return lights;
 }
 
-// What spoils the photographs of a sphere.
+// Errors in the images of a sphere.
 struct SphereFlaws {
-  double noise = 0;       // standard deviation, of white
-  double shadows = 0;     // share of observations that something else shadows
+  double noise = 0;       // standard deviation, relative to white
+  double shadows = 0;     // share of observations with a cast shadow
   double highlights = 0;  // share of observations with a highlight
   unsigned seed = 1;
 };
 
-// A matt sphere of a given albedo, seen from far away: a pixel's normal and what it shows under
-// each light, albedo max(0, l . n), attached shadows with it.
+// A pixel of a matt sphere under orthographic projection: its normal, and its radiance under each
+// light, albedo * max(0, l . n).
 struct SpherePixel {
   Eigen::Vector3d normal;
   std::vector<double> observations;
@@ -52,10 +53,10 @@ inline std::vector<SpherePixel> LitSphere(const std::vector<DirectionalLight>& l
       SpherePixel pixel{{x / double(radius), y / double(radius), std::sqrt(1 - r2)}, {}};
       for (const auto& light : lights) {
         double b = albedo * std::max(0.0, light.to_light.dot(pixel.normal));
-        const double luck = uniform(random);
-        if (luck < flaws.shadows) {
+        const double u = uniform(random);
+        if (u < flaws.shadows) {
           b = 0;
-        } else if (luck < flaws.shadows + flaws.highlights) {
+        } else if (u < flaws.shadows + flaws.highlights) {
           b += albedo * (0.3 + 0.7 * uniform(random));
         }
         if (flaws.noise > 0) b = std::max(0.0, b + flaws.noise * normal_noise(random));

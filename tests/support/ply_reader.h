@@ -15,15 +15,14 @@
 
 namespace nerf::test {
 
-// Reads a binary little-endian PLY file of float positions, optional byte colours and triangles. It
-// follows the header rather than what WritePly is known to write; what it cannot read fails the
-// test.
+// Reads a binary little-endian PLY file of float positions, optional byte colours and triangles, by
+// its header. Content that it cannot read fails the test.
 inline Mesh ReadPly(const std::filesystem::path& file) {
   const std::string bytes = ReadWholeFile(file);
   const std::string end = "end_header\n";
   const std::size_t data = bytes.find(end);
   if (data == std::string::npos) {
-    ADD_FAILURE() << "no end of the header";
+    ADD_FAILURE() << "the header has no end";
     return {};
   }
   std::istringstream header(bytes.substr(0, data));

@@ -6,7 +6,7 @@
 
 namespace nerf::test {
 
-// Soft light from above, a wide warm glow at one side, a cool one at the other.
+// Soft light from above, a wide warm glow on one side, a cool one on the other.
 inline EnvironmentMap SmoothEnvironment() {
   Image image(256, 128, 3, ColorEncoding::kLinear);
   const EnvironmentMap grid(image, "grid");

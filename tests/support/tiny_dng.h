@@ -10,9 +10,9 @@
 
 namespace nerf::test {
 
-// The bytes of a camera raw file (DNG) of grey light: a Bayer mosaic of 16 bits whose colours are
-// sRGB's primaries, black at 0 and white at 65535, everything else left at its plainest.
-//   count  what the sensor counted at a pixel
+// The bytes of a minimal camera raw file (DNG): a Bayer mosaic of 16 bits with sRGB primaries,
+// black at 0 and white at 65535.
+//   count  sensor value at a pixel
 inline std::string TinyDng(int width, int height,
                            const std::function<std::uint16_t(int x, int y)>& count) {
   static_assert(std::endian::native == std::endian::little);
@@ -40,17 +40,17 @@ inline std::string TinyDng(int width, int height,
       {254, kLong, u32(0)},                                // the main image
       {256, kLong, u32(static_cast<std::size_t>(width))},  // columns
       {257, kLong, u32(rows)},                             //
-      {258, kShort, u16(16)},                              // bits a sample
+      {258, kShort, u16(16)},                              // bits per sample
       {259, kShort, u16(1)},                               // not compressed
       {262, kShort, u16(32803)},                           // colour filter array
       {271, kText, std::string("Test\0", 5)},              // maker
       {272, kText, std::string("Cam\0", 4)},               // model
-      {kStripOffset, kLong, u32(0)},                       // put in below
+      {kStripOffset, kLong, u32(0)},                       // set below
       {274, kShort, u16(1)},                               // upright
-      {277, kShort, u16(1)},                               // samples a pixel
-      {278, kLong, u32(rows)},                             // rows in the one strip
+      {277, kShort, u16(1)},                               // samples per pixel
+      {278, kLong, u32(rows)},                             // rows per strip
       {279, kLong, u32(pixel_bytes)},                      //
-      {33421, kShort, u16(2) + u16(2)},                    // the mosaic repeats
+      {33421, kShort, u16(2) + u16(2)},                    // mosaic pattern size
       {33422, kByte, std::string("\0\1\1\2", 4)},          // R G / G B
       {50706, kByte, std::string("\1\4\0\0", 4)},          // DNG 1.4
       {50707, kByte, std::string("\1\1\0\0", 4)},          //
