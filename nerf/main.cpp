@@ -17,15 +17,15 @@ namespace {
 constexpr int kExitBadInput = 2;
 constexpr int kExitInternal = 1;
 
-// Results go to standard output, what happens on the way to standard error.
+// Results go to standard output, warnings and errors to standard error.
 void SetUpLogging() {
   auto logger = spdlog::stderr_color_st("nerf");
   logger->set_pattern("%^%l%$: %v");
   spdlog::set_default_logger(logger);
 }
 
-// Every step frees and asks again for the same large blocks. By default each of them goes back to
-// the system and returns as fresh, zeroed pages: a tenth of the training time.
+// Every step frees and allocates the same large blocks. By default glibc returns them to the system
+// and gets zeroed pages back, which takes a tenth of the training time.
 void KeepFreedMemory() {
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
@@ -40,9 +40,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", NERF_VERSION);
   app.require_subcommand(1);
   app.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return fmt::format("error: {}; --help shows what there is\n", e.what());
+    return fmt::format("error: {}; see --help\n", e.what());
   });
-  app.footer("nerf COMMAND --help shows each command with examples.");
+  app.footer("nerf COMMAND --help shows the flags of a command, with examples.");
   try {
     nerf::AddTrainCommand(app);
     nerf::AddRenderCommand(app);
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::RuntimeError& e) {
-    return e.get_exit_code();  // a command that ran, and whose answer is no
+    return e.get_exit_code();  // a command that ran and failed or was stopped
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : kExitBadInput;
   } catch (const std::filesystem::filesystem_error& e) {
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
     spdlog::error("{}", e.what());
     return kExitBadInput;
   } catch (const std::exception& e) {
-    // LibTorch adds a stack trace behind its first line.
+    // LibTorch appends a stack trace after the first line.
     spdlog::critical("{}", std::string_view(e.what()).substr(0, std::strcspn(e.what(), "\n")));
     return kExitInternal;
   }

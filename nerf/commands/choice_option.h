@@ -6,7 +6,7 @@
 
 namespace nerf {
 
-// A flag whose value is one of a few words; another word is refused with those that there are.
+// Adds a flag whose value is one of a few words; another word is an error that lists them.
 template <class T>
 CLI::Option* AddChoiceOption(CLI::App& command, const std::string& flag, T& value,
                              const std::map<std::string, T>& choices, const std::string& meaning) {
@@ -22,7 +22,7 @@ CLI::Option* AddChoiceOption(CLI::App& command, const std::string& flag, T& valu
           [&value, choices, flag, words](const std::string& word) {
             const auto found = choices.find(word);
             if (found == choices.end()) {
-              throw CLI::ValidationError(flag, word + " is none of " + words);
+              throw CLI::ValidationError(flag, word + " is not one of " + words);
             }
             value = found->second;
           },

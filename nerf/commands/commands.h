@@ -6,8 +6,7 @@ class App;
 
 namespace nerf {
 
-// Each adds one subcommand with its flags and examples to the program; what the command does runs
-// as its callback.
+// Each adds a subcommand with its flags, its examples, and a callback that runs it.
 void AddSampleCommand(CLI::App& app);
 void AddPosesCommand(CLI::App& app);
 void AddPhotometricStereoCommand(CLI::App& app);

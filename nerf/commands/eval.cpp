@@ -39,8 +39,8 @@ struct EvalArguments {
   bool json = false;
 };
 
-// Of the contact sheet, so that memory stays bounded.
-constexpr std::size_t kMostRows = 50;
+// Rows of the contact sheet, to bound its memory.
+constexpr std::size_t kMaxRows = 50;
 
 Split SplitFromName(const std::string& name) {
   if (name == "train") return Split::kTrain;
@@ -66,7 +66,7 @@ void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const
   }
 }
 
-// Scores of the split's views; the contact sheet is written.
+// Evaluates the views of the split and writes the contact sheet.
 Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
                          const fs::path& output) {
   const std::vector<const PosedImage*> images = ImagesOf(run.posed, SplitFromName(arguments.split));
@@ -81,15 +81,15 @@ Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
       Evaluate(*run.model, run.posed, images, {arguments.quality, arguments.fit_exposure, {}},
                [&](const EvaluatedView& view) {
                  const std::string psnr = fmt::format("{:.2f} dB", view.score->psnr);
-                 if (rows.size() < kMostRows) {
+                 if (rows.size() < kMaxRows) {
                    rows.push_back({view.image->name + "  " + psnr, *view.truth, *view.rendering});
                  }
                  progress.Update(++done, psnr);
                });
   progress.Finish();
-  for (const std::string& reason : evaluation.unreadable) spdlog::warn("{}; left out", reason);
+  for (const std::string& reason : evaluation.unreadable) spdlog::warn("{}; skipped", reason);
   if (!evaluation.unreadable.empty()) {
-    spdlog::warn("{} of {} images could not be read; the mean is of the others",
+    spdlog::warn("{} of {} images could not be read; the mean is over the others",
                  evaluation.unreadable.size(), images.size());
   }
   if (evaluation.scores.empty()) {
@@ -102,7 +102,7 @@ Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
 void RunEval(const EvalArguments& arguments) {
   UseThreads(arguments.threads);
   const OpenedRun run = OpenRun(arguments.run);
-  run.model->Renderer(arguments.quality);  // a quality out of range leaves no folder behind
+  run.model->Renderer(arguments.quality);  // checks the quality before a folder is created
   const fs::path output =
       arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
   MakeOutputFolder(output);
@@ -119,7 +119,7 @@ void RunEval(const EvalArguments& arguments) {
                  {"step", run.model->Step()},
                  {"training_seconds", run.training_seconds},
                  {"left_out", evaluation.unreadable.size()}});
-  // Names of files need not be UTF-8.
+  // File names may not be valid UTF-8.
   const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
   WriteFileAtomically(output / "eval.json", text + "\n");
   if (arguments.json) {
@@ -128,7 +128,7 @@ void RunEval(const EvalArguments& arguments) {
   }
   PrintEvaluation(evaluation);
   if (evaluation.exposure_fitted) {
-    fmt::print("each rendering at its photograph's exposure, fitted\n");
+    fmt::print("each view rendered at the exposure fitted to its photograph\n");
   }
   fmt::print("{}\n", (output / "contact_sheet.png").string());
 }
@@ -136,31 +136,30 @@ void RunEval(const EvalArguments& arguments) {
 }  // namespace
 
 void AddEvalCommand(CLI::App& app) {
-  auto* command = app.add_subcommand("eval", "PSNR and SSIM of a run on photographs it never saw");
+  auto* command = app.add_subcommand("eval", "PSNR and SSIM of a run on held-out photographs");
   const auto arguments = std::make_shared<EvalArguments>();
   command->add_option("run", arguments->run, "run folder")->required();
   command->add_option("-o,--output", arguments->output,
-                      "where eval.json and contact_sheet.png go [RUN/eval]");
+                      "folder for eval.json and contact_sheet.png [RUN/eval]");
   command->add_option("--split", arguments->split, "which images: test, validation, train")
       ->check(CLI::IsMember({"test", "validation", "train"}))
       ->capture_default_str();
   command
       ->add_option("--quality", arguments->quality,
-                   "0 (fast) to 1 (exact); docs/rendering.md shows what each costs")
+                   "0 (fast) to 1 (exact); costs and errors are in docs/rendering.md")
       ->capture_default_str();
   command->add_flag("--fit-exposure", arguments->fit_exposure,
-                    "compare each rendering at its photograph's exposure, as runs that simulate "
-                    "exposures always are, so that others can be compared with them");
+                    "render each view at the exposure fitted to its photograph; always on for runs "
+                    "that simulate exposures, to compare others with them");
   command->add_flag("--effects", arguments->effects,
-                    "instead: what each simulated effect gains and costs, by short trainings");
-  command
-      ->add_option("--effects-steps", arguments->effects_steps, "steps of each of those trainings")
+                    "instead: measure gain and cost of each simulated effect by short trainings");
+  command->add_option("--effects-steps", arguments->effects_steps, "steps of each short training")
       ->check(CLI::Range(10, 1000000))
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");
   command->footer(
-      "PSNR and SSIM compare pictures as they would be saved (8-bit sRGB).\n"
+      "PSNR and SSIM are of images as they would be saved (8-bit sRGB).\n"
       "Examples:\n"
       "  nerf eval runs/fox\n"
       "  nerf eval runs/fox --effects\n"

@@ -50,9 +50,10 @@ void PrintEvaluation(const Evaluation& evaluation) {
   };
   for (const ViewScore& s : evaluation.scores) row(s);
   row(evaluation.Mean());
-  fmt::print("{:.1f} samples a ray, {:.0f} MB at most\n", cost.SamplesPerRay(), PeakMegabytes());
-  if (cost.seconds.Sum() == 0) return;  // of a renderer that does not measure
-  fmt::print("of a frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, rest {:.2f} s\n",
+  fmt::print("{:.1f} samples per ray, {:.0f} MB peak memory\n", cost.SamplesPerRay(),
+             PeakMegabytes());
+  if (cost.seconds.Sum() == 0) return;  // the renderer does not time its stages
+  fmt::print("per frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, rest {:.2f} s\n",
              cost.PerView(cost.seconds.sampling), cost.PerView(cost.seconds.encoding),
              cost.PerView(cost.seconds.networks), cost.PerView(cost.seconds.compositing));
 }
@@ -64,8 +65,8 @@ nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& all, i
                        {"psnr_with", m.with.psnr},
                        {"psnr_without", m.without.psnr},
                        {"on_halves", m.on_halves},
-                       {"seconds_a_step_with", m.with.seconds_a_step},
-                       {"seconds_a_step_without", m.without.seconds_a_step},
+                       {"seconds_a_step_with", m.with.seconds_per_step},
+                       {"seconds_a_step_without", m.without.seconds_per_step},
                        {"megabytes", m.with.megabytes - m.without.megabytes}});
   }
   return {{"steps", steps}, {"effects", effects}};
@@ -73,20 +74,20 @@ nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& all, i
 
 void PrintMeasurements(const std::vector<EffectMeasurement>& all, int steps) {
   if (all.empty()) {
-    fmt::print("the run simulates no effect that could be disabled\n");
+    fmt::print("the run simulates no effect that can be measured\n");
     return;
   }
   fmt::print("{:<17} {:>8} {:>9} {:>8} {:>16} {:>9}\n", "effect", "with dB", "without", "gain dB",
-             "time of a step", "memory MB");
+             "time per step", "memory MB");
   for (const EffectMeasurement& m : all) {
     fmt::print("{:<17} {:>8.2f} {:>9.2f} {:>+8.2f} {:>+14.1f} % {:>+9.2f}\n", m.effect->name,
                m.with.psnr, m.without.psnr, m.with.psnr - m.without.psnr,
-               100 * (m.with.seconds_a_step / m.without.seconds_a_step - 1),
+               100 * (m.with.seconds_per_step / m.without.seconds_per_step - 1),
                m.with.megabytes - m.without.megabytes);
   }
   fmt::print(
-      "after {} steps, on the held-out photographs, each at its own exposure; more training may "
-      "change it\n",
+      "after {} steps, on held-out photographs, each at its fitted exposure; gains can change with "
+      "longer training\n",
       steps);
   for (const EffectMeasurement& m : all) {
     if (!m.on_halves) continue;

@@ -8,12 +8,12 @@
 
 namespace nerf {
 
-// What eval.json holds of an evaluation.
+// The scores and costs for eval.json.
 nlohmann::json JsonFromEvaluation(const Evaluation& evaluation);
-// A row for each view and their mean, and what a frame took.
+// Prints a table of the views and their mean, and the cost of a frame.
 void PrintEvaluation(const Evaluation& evaluation);
 
-// What effects_worth.json holds, and the same as a table.
+// The content of effects_worth.json, and the same as a table.
 //   steps  of each training
 nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& effects, int steps);
 void PrintMeasurements(const std::vector<EffectMeasurement>& effects, int steps);

@@ -12,7 +12,8 @@ void AddLightStageFlags(CLI::App& command, LightStageFlags& flags) {
   synthetic::LightStageOptions& options = flags.options;
   CLI::Option* stage = command.add_option(
       "--light-stage", options.lights,
-      "instead of a sample: a subject under this many lights, one at a time, for nerf relight");
+      "instead of a sample: images of a subject under this many lights, one at a time, for nerf "
+      "relight");
   flags.light_stage = stage;
   // Flags that would be ignored are an error.
   for (const char* sample_flag : {"--views", "--samples", "--seed", "--scenario"}) {
@@ -20,18 +21,18 @@ void AddLightStageFlags(CLI::App& command, LightStageFlags& flags) {
   }
   CLI::Option* environment = command.add_option(
       "--environment", options.environment,
-      "with --light-stage: a map; truth/direct.exr shows the subject rendered directly under it");
+      "with --light-stage: a map; truth/direct.exr is the subject rendered directly under it");
   environment->needs(stage);
   command
       .add_option("--paths", options.paths,
-                  "with --environment: light paths for each of the four samples of a pixel of that "
-                  "picture")
+                  "with --environment: light paths for each of the four samples per pixel of "
+                  "truth/direct.exr")
       ->capture_default_str()
       ->needs(environment);
   command
       .add_option("--merl", options.merl,
-                  "with --light-stage: a measured BRDF in the binary format of MERL, in place of "
-                  "the gold ball's")
+                  "with --light-stage: a measured BRDF in the binary format of MERL, instead of "
+                  "that of the gold ball")
       ->needs(stage);
   command
       .add_option("--bounces", options.terms.bounces,
@@ -57,7 +58,7 @@ void RunLightStage(const std::filesystem::path& folder, const LightStageFlags& f
     throw CLI::RuntimeError(130);
   }
   fmt::print(
-      "{} images under one light each are in {}, {:.1f} s\n"
+      "wrote {} images, each under one light, to {} in {:.1f} s\n"
       "next: nerf relight {} --environment MAP\n",
       options.lights, folder.string(), watch.Seconds(), folder.string());
 }

@@ -59,20 +59,20 @@ void WriteShot(const RenderedView& view, const SceneFacts& scene, const RenderAr
   }
   if (arguments.opacity) {
     Image opacity = view.opacity;
-    opacity.encoding = ColorEncoding::kSrgb;  // a mask: numbers go into the file as they are
+    opacity.encoding = ColorEncoding::kSrgb;  // a mask: values are written unchanged
     WriteImage(stem.string() + ".opacity.png", opacity);
   }
 }
 
-// The view as a photograph of that exposure shows it; what is seen through it is not exposed.
+// Applies the exposure of a photograph to a view, except to its background contribution.
 void Expose(const std::array<float, 3>& gains, const Eigen::Vector3f& background,
             RenderedView& view) {
   ApplyGains(gains, BackgroundContribution(view.opacity.pixels, {background.data(), 3}),
              view.rgb.pixels);
 }
 
-// The quality that is asked for, or the best at which a frame takes no longer than asked for.
-// Prints what it costs and loses, measured on the first of the views.
+// The requested quality, or the highest whose frames take at most the requested time. Prints its
+// cost and error, measured on the first view.
 double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArguments& arguments) {
   if (!arguments.seconds_per_frame && arguments.quality == 1) return 1;
   const QualityProbe probe(*run.model, {shot.camera, shot.world_from_camera});
@@ -86,7 +86,7 @@ double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArgumen
              FormatSeconds(measured.seconds), loss);
   std::fflush(stdout);
   if (measured.seconds > arguments.seconds_per_frame.value_or(measured.seconds)) {
-    spdlog::warn("no quality is as fast as {} a frame; --downscale makes smaller pictures",
+    spdlog::warn("no quality takes at most {} a frame; use --downscale for smaller images",
                  FormatSeconds(*arguments.seconds_per_frame));
   }
   return measured.quality;
@@ -107,7 +107,7 @@ void CheckArguments(const RenderArguments& arguments) {
   }
 }
 
-// Each picture coarse first, then whole.
+// Renders all views; with --preview each one coarse first.
 void RenderShots(const OpenedRun& run, const ShotList& list, const RenderArguments& arguments,
                  const fs::path& output) {
   const SceneFacts& scene = run.model->Scene();
@@ -132,8 +132,8 @@ void RenderShots(const OpenedRun& run, const ShotList& list, const RenderArgumen
                         background, scene.encoding));
     }
     RenderedView view =
-        run.model->Render({shot.camera, shot.world_from_camera, quality, [&](std::int64_t of_this) {
-                             progress.Update(done + of_this, shot.name);
+        run.model->Render({shot.camera, shot.world_from_camera, quality, [&](std::int64_t of_view) {
+                             progress.Update(done + of_view, shot.name);
                            }});
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
     if (gains) Expose(*gains, background, view);
@@ -144,7 +144,7 @@ void RenderShots(const OpenedRun& run, const ShotList& list, const RenderArgumen
 void WriteFilm(const ShotList& list, const RenderArguments& arguments, const fs::path& output) {
   if (!list.frames_per_second || arguments.no_video) return;
   if (arguments.format != "png" || !FfmpegIsInstalled()) {
-    fmt::print("no film: it needs --format png and the ffmpeg program\n");
+    fmt::print("no film.mp4: it needs --format png and the ffmpeg program\n");
     return;
   }
   const fs::path film = output / "film.mp4";
@@ -177,10 +177,10 @@ void RunRender(const RenderArguments& arguments) {
 }  // namespace
 
 void AddRenderCommand(CLI::App& app) {
-  auto* command = app.add_subcommand("render", "Renders views that no camera took");
+  auto* command = app.add_subcommand("render", "Renders new views of a trained run");
   const auto arguments = std::make_shared<RenderArguments>();
   command->add_option("run", arguments->run, "run folder")->required();
-  command->add_option("-o,--output", arguments->output, "where pictures go [RUN/renders/...]");
+  command->add_option("-o,--output", arguments->output, "output folder [RUN/renders/...]");
   auto* image =
       command->add_option("--image", arguments->shots.image, "the view of this photograph");
   auto* pose = command->add_option("--pose", arguments->shots.pose,
@@ -189,31 +189,32 @@ void AddRenderCommand(CLI::App& app) {
                                    "orbit, spiral, training, or nerfstudio's camera_path.json");
   image->excludes(pose)->excludes(path);
   pose->excludes(path);
-  command->add_option("--frames", arguments->shots.frames, "pictures along the path")
+  command->add_option("--frames", arguments->shots.frames, "number of views along the path")
       ->capture_default_str();
-  command->add_option("--fps", arguments->fps, "frames a second of the film");
+  command->add_option("--fps", arguments->fps, "frames per second of the film");
   command->add_option(
       "--downscale", arguments->shots.downscale,
-      "reduce the camera by this factor [as trained; 1 for --pose and a path file]");
+      "reduce the resolution by this factor [as trained; 1 for --pose and a path file]");
   command->add_option("--format", arguments->format, "png, jpg, or exr (linear)")
       ->check(CLI::IsMember({"png", "jpg", "exr"}))
       ->capture_default_str();
   command->add_flag("--depth", arguments->depth,
-                    "also depth along the ray: EXR in the input's units, and a picture");
-  command->add_flag("--opacity", arguments->opacity, "also opacity, as PNG");
+                    "also write depth along the ray: EXR in the input's units, and a colour map");
+  command->add_flag("--opacity", arguments->opacity, "also write opacity, as PNG");
   command->add_flag("--preview", arguments->preview,
-                    "write each picture coarse first, then finer, then whole");
-  command->add_flag("--no-video", arguments->no_video, "make no MP4 of a path");
-  auto* quality = command
-                      ->add_option("--quality", arguments->quality,
-                                   "0, fast, to 1, exact; what each costs is in docs/rendering.md")
-                      ->capture_default_str();
+                    "write each image at coarse resolution first, then finer, then full");
+  command->add_flag("--no-video", arguments->no_video, "do not make an MP4 of a path");
+  auto* quality =
+      command
+          ->add_option("--quality", arguments->quality,
+                       "0 (fast) to 1 (exact); costs and errors are in docs/rendering.md")
+          ->capture_default_str();
   command
       ->add_option("--seconds-per-frame", arguments->seconds_per_frame,
-                   "the best quality whose frames take no longer")
+                   "use the highest quality whose frames take at most this time")
       ->excludes(quality);
   command->add_option("--exposure-of", arguments->exposure_of,
-                      "as this photograph is exposed [the mean of those trained on]");
+                      "use the exposure of this photograph [mean of the training photographs]");
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "Without --image, --pose or --path: the views of the held-out photographs.\n"

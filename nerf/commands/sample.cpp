@@ -22,7 +22,7 @@ void RunSample(const SampleArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
   synthetic::WriteSample(folder, arguments.options);
   fmt::print(
-      "{} photographs are in {}; true poses, depth, normals and albedo, for tests only, in {}\n"
+      "wrote {} photographs to {}, and ground truth (poses, depth, normals, albedo) to {}\n"
       "next: nerf train {}\n",
       arguments.options.views, (folder / "images").string(), (folder / "truth").string(),
       folder.string());
@@ -33,9 +33,8 @@ void AddScenarioOption(CLI::App& command, synthetic::Scenario& scenario) {
       .add_option_function<std::string>(
           "--scenario,--calls-for",
           [&scenario](const std::string& name) { scenario = synthetic::ScenarioFromName(name); },
-          "what the capture needs: " + synthetic::ScenarioNames() +
-              "; --calls-for is the former name of this flag and will be removed in the next "
-              "version")
+          "what the capture calls for: " + synthetic::ScenarioNames() +
+              "; --calls-for is the old name of this flag and will be removed in the next version")
       ->default_str("built-in");
 }
 
@@ -48,7 +47,7 @@ void AddSampleCommand(CLI::App& app) {
       "sample", "Generates photographs of a small built-in scene, for a first training and tests");
   command
       ->add_option("folder", arguments->folder,
-                   "output folder: new, empty, or an earlier sample, which is replaced")
+                   "output folder: new, empty, or an existing sample, which is replaced")
       ->required();
   AddScenarioOption(*command, options.scenario);
   const CLI::Option* const views =
@@ -56,9 +55,9 @@ void AddSampleCommand(CLI::App& app) {
                           "number of photographs [36; depth_supervision: 10, anti_aliasing: 64]");
   command->add_option("--width", options.width, "of a photograph, pixels")->capture_default_str();
   command->add_option("--height", options.height, "of a photograph, pixels")->capture_default_str();
-  command->add_option("--samples", options.samples_per_pixel, "rays averaged in each pixel")
+  command->add_option("--samples", options.samples_per_pixel, "rays averaged per pixel")
       ->capture_default_str();
-  command->add_option("--seed", options.seed, "of the irregular camera positions and of all noise")
+  command->add_option("--seed", options.seed, "of camera positions and noise")
       ->capture_default_str();
   command->add_option("--threads", options.threads, "0: all cores")->capture_default_str();
   AddLightStageFlags(*command, arguments->light_stage);
@@ -67,9 +66,10 @@ void AddSampleCommand(CLI::App& app) {
       "  nerf sample demo                             36 photographs in demo/images\n"
       "  nerf train demo                              then train on them\n"
       "  nerf sample demo --views 60 --width 800 --height 600\n"
-      "  nerf sample drift --scenario exposure        exposure and white balance change\n"
-      "  nerf sample far --scenario anti_aliasing     half of the cameras are four times as far\n"
-      "  nerf sample loose --scenario pose_refinement poses slightly wrong, with the true ones\n"
+      "  nerf sample drift --scenario exposure        exposure and white balance vary\n"
+      "  nerf sample far --scenario anti_aliasing     half of the cameras are four times as far "
+      "away\n"
+      "  nerf sample loose --scenario pose_refinement slightly wrong poses, and the true ones\n"
       "  nerf sample stage --light-stage 256          one light at a time, for nerf relight");
   command->callback([arguments, views] {
     if (views->count() == 0) {

@@ -49,7 +49,7 @@ ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs:
       return image.name == options.image || FileStem(image.name) == options.image;
     });
     if (found == run.posed.images.end()) {
-      throw InputError("--image {}: the run has no such photograph; names stand in {}",
+      throw InputError("--image {}: the run has no such photograph; names are listed in {}",
                        options.image, PosesPath(folder).string());
     }
     return {{ShotOf(run, *found, downscale)}, "image", {}};
@@ -82,7 +82,7 @@ ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs:
     if (image.split == Split::kTest) list.shots.push_back(ShotOf(run, image, downscale));
   }
   if (list.shots.empty()) {
-    throw InputError("{}: the run holds out no images; use --path, --pose or --image",
+    throw InputError("{}: the run has no held-out images; use --path, --pose or --image",
                      folder.string());
   }
   return list;

@@ -11,7 +11,7 @@
 
 namespace nerf {
 
-// Which views to render; none of image, pose and path: those of the held-out photographs.
+// Which views to render. Without image, pose and path: those of the held-out photographs.
 struct ShotOptions {
   std::string image;  // name of a photograph
   std::string pose;   // JSON file
@@ -20,7 +20,7 @@ struct ShotOptions {
   std::optional<int> downscale;
 };
 
-// One picture to make, in the frame and units of the input.
+// One view to render, in the frame and units of the input.
 struct Shot {
   std::string name;
   Eigen::Isometry3d world_from_camera;
@@ -33,8 +33,9 @@ struct ShotList {
   std::optional<double> frames_per_second;  // of a film
 };
 
+// The views to render.
 //   folder  of the run, for errors
-// Throws InputError where there is no such view.
+// Throws InputError if there is no such view.
 ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options,
                      const std::filesystem::path& folder);
 

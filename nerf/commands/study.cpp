@@ -35,8 +35,8 @@ struct StudyArguments {
 constexpr double kShortestStudy = 600, kLongestStudy = 30 * 24 * 3600;  // seconds
 
 void PrintFront(const nlohmann::json& results) {
-  fmt::print("{:<18} {:>8} {:>9} {:>8} {:>11}\n", "on the front", "seconds", "PSNR dB", "SSIM",
-             "s a frame");
+  fmt::print("{:<18} {:>8} {:>9} {:>8} {:>11}\n", "Pareto front", "seconds", "PSNR dB", "SSIM",
+             "s per frame");
   std::map<double, const nlohmann::json*> by_seconds;
   for (const auto& setting : results.at("settings")) {
     if (setting.at("on_training_front")) by_seconds[setting.at("seconds")] = &setting;
@@ -58,7 +58,7 @@ void RunStudy(const StudyArguments& arguments) {
   if (options.downscale < 1) {
     throw InputError("--downscale {}: use 1 or more", options.downscale);
   }
-  sfm::FindInput(arguments.input);  // a wrong input must not leave an empty folder behind
+  sfm::FindInput(arguments.input);  // fails before the output folder is created
   const fs::path folder = arguments.output;
   MakeOutputFolder(folder);
   TrainingDisplay display;
@@ -67,12 +67,12 @@ void RunStudy(const StudyArguments& arguments) {
   PreparedScene scene = PrepareScene(arguments.input, folder, config.data, threads, listener);
   InspectScene(config, {}, scene, listener);
   listener(CaptureInspected{&scene.inspection, {}, scene.inspection_seconds});
-  // What each training reports is not shown.
-  const PipelineListener of_settings = [&](const PipelineEvent& event) {
+  // Events of single trainings are not shown.
+  const PipelineListener setting_listener = [&](const PipelineEvent& event) {
     if (!std::holds_alternative<TrainerEvent>(event)) display(event);
   };
-  Study study(std::move(scene), options, folder, of_settings);
-  fmt::print("{} settings in {} (poses not counted); Ctrl-C stops, the same command goes on\n",
+  Study study(std::move(scene), options, folder, setting_listener);
+  fmt::print("{} settings in {} (without poses); Ctrl-C stops, the same command continues\n",
              study.Settings(), FormatDuration(options.budget));
   const bool done = study.Run(StopOnInterrupt(),
                               [&](std::size_t number, const StudySetting& setting, double seconds) {
@@ -81,7 +81,7 @@ void RunStudy(const StudyArguments& arguments) {
                                 std::fflush(stdout);
                               });
   if (!done) {
-    fmt::print("stopped; the settings that are done are in {}\n", folder.string());
+    fmt::print("stopped; finished settings are in {}\n", folder.string());
     return;
   }
   const fs::path page = folder / "study.html";
@@ -94,15 +94,15 @@ void RunStudy(const StudyArguments& arguments) {
 
 void AddStudyCommand(CLI::App& app) {
   auto* command =
-      app.add_subcommand("study", "What accuracy costs in time: trains a grid of settings");
+      app.add_subcommand("study", "Measures accuracy against time: trains a grid of settings");
   const auto arguments = std::make_shared<StudyArguments>();
   command
       ->add_option("input", arguments->input,
                    "folder of photos, COLMAP project, transforms.json, or LLFF folder")
       ->required();
-  command->add_option("-o,--output", arguments->output, "where study.json and study.html go")
+  command->add_option("-o,--output", arguments->output, "folder for study.json and study.html")
       ->required();
-  command->add_option("--budget", arguments->options.budget, "for all of it: 10m, 1h [10m]")
+  command->add_option("--budget", arguments->options.budget, "total time, such as 1h [10m]")
       ->transform(
           CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
   command
@@ -110,8 +110,8 @@ void AddStudyCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
-      "study.html shows PSNR on held-out photographs against seconds of training and seconds a\n"
-      "frame, and opens without a network.\n"
+      "study.html shows PSNR on held-out photographs over training time and time per frame. It\n"
+      "needs no network.\n"
       "Examples:\n"
       "  nerf study photos/chair -o studies/chair\n"
       "  nerf study photos/fox/transforms.json -o studies/fox --downscale 4 --budget 1h");

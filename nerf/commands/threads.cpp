@@ -11,7 +11,7 @@ int UseThreads(int threads) {
   if (threads < 0) {
     throw InputError("--threads {}: use 1 or more, or 0 for all cores", threads);
   }
-  // LibTorch's own default has been seen to be one thread on a machine with two.
+  // Set explicitly, because LibTorch's default can be one thread on a machine with two cores.
   const int used = threads > 0 ? threads : AvailableCores();
   SetNumThreads(used);
   at::set_num_threads(used);

@@ -2,8 +2,8 @@
 
 namespace nerf {
 
-// Uses `threads` threads, or all cores that this process may use when it is 0. Returns the number.
-// Throws InputError when it is negative.
+// Sets the number of threads; 0: all cores available to this process. Returns the number.
+// Throws InputError if it is negative.
 int UseThreads(int threads);
 
 }  // namespace nerf

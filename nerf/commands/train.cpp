@@ -39,16 +39,16 @@ struct TrainArguments {
 fs::path RunFolder(const TrainArguments& arguments) {
   if (!arguments.output.empty()) return arguments.output;
   if (arguments.input.empty()) {
-    throw InputError("nerf train: name an INPUT, or with --resume the run with -o RUN");
+    throw InputError("nerf train: give an INPUT, or --resume with -o RUN");
   }
   fs::path name = fs::absolute(arguments.input).lexically_normal();
   if (!name.has_filename()) name = name.parent_path();  // a slash at the end
-  // photos/fox/transforms.json is the fox's.
+  // photos/fox/transforms.json is named fox.
   if (name.extension() == ".json") name = name.parent_path();
   return fs::path("runs") / name.filename();
 }
 
-// What --set and the flags beside it assign.
+// The assignments by --set and by the flags that are short for it.
 std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
   std::vector<std::string> assignments = arguments.assignments;
   if (arguments.downscale) {
@@ -71,12 +71,12 @@ TrainingRequest RequestOf(const TrainArguments& arguments, int threads) {
   if (arguments.resume) {
     if (!request.assignments.empty() || arguments.preset_is_given || arguments.effects != "auto") {
       throw InputError(
-          "--resume goes on with the run's own configuration; omit --config, --set, --effects, "
+          "--resume continues with the run's configuration; omit --config, --set, --effects, "
           "--downscale, --time-budget and --target-psnr");
     }
     return request;
   }
-  if (arguments.input.empty()) throw InputError("nerf train: name an INPUT");
+  if (arguments.input.empty()) throw InputError("nerf train: give an INPUT");
   request.input = arguments.input;
   request.preset = arguments.preset;
   request.preset_is_given = arguments.preset_is_given;
@@ -125,26 +125,26 @@ void AddTrainCommand(CLI::App& app) {
       ->take_all();
   command
       ->add_option("--effects", arguments->effects,
-                   "auto: as the capture calls for them; config: as configured; "
+                   "auto: decide by inspection and trials; config: as configured; "
                    "+exposure,-view_dependence: these on and off, the others auto")
       ->capture_default_str();
   command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
   command
       ->add_option("--time-budget", arguments->time_budget,
-                   "end after this time: 90, 30s, 2m, 1h; chooses the preset, unless --config does")
+                   "end after this time: 90, 30s, 2m, 1h; chooses the preset without --config")
       ->transform(
           CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
   command->add_option("--target-psnr", arguments->target_psnr,
-                      "end when the validation photographs reach so many dB");
+                      "end when the PSNR on validation photographs reaches this, dB");
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
-  command->add_flag("--resume", arguments->resume, "go on with the run in -o");
+  command->add_flag("--resume", arguments->resume, "continue the run in -o");
   command->add_flag("--help-config", arguments->help_config,
                     "list every key of the configuration with its default, range and meaning");
   command->footer(
-      "Ctrl-C saves and leaves; --resume goes on where the run stopped, bit for bit with the same\n"
-      "number of threads. A time budget counts from the command's start, poses and reading with "
-      "it;\n"
-      "such runs end by the clock, and do not repeat bit for bit.\n"
+      "Ctrl-C saves and exits; --resume continues the run, with the same result bit for bit if "
+      "the\n"
+      "number of threads is the same. A time budget is for the whole command, including poses and\n"
+      "reading photographs; such runs are not reproducible bit for bit.\n"
       "Examples:\n"
       "  nerf train photos/fox -o runs/fox --downscale 4\n"
       "  nerf train photos/fox/transforms.json --config fast --set train.steps=2000\n"

@@ -12,11 +12,11 @@
 namespace nerf {
 namespace {
 
-constexpr double kGain = 0.5;  // dB, whose price is shown
+constexpr double kGain = 0.5;  // dB, whose time is shown
 
-// What quality cost, and what more of it will:
-// "27.30 dB, last +0.5 dB cost 40 s, next about 90 s".
-std::string PriceOfQuality(const QualityCurve& curve) {
+// PSNR, and the time of the last and the next decibels: "27.30 dB, last +0.5 dB cost 40 s, next
+// about 90 s".
+std::string QualityAndCost(const QualityCurve& curve) {
   std::string text;
   if (const auto psnr = curve.Last()) text += fmt::format("{:.2f} dB", *psnr);
   if (const auto last = curve.SecondsOfLast(kGain)) {
@@ -63,22 +63,21 @@ void TrainingDisplay::Show(const InspectionProgress& event) {
 void TrainingDisplay::Show(const CaptureInspected& event) {
   const std::vector<Verdict>& verdicts = event.inspection->verdicts;
   if (event.inspection->stops.empty()) {
-    // Most is undecided, and the table would be long for what it shows.
+    // Most effects are undecided: print a line instead of the table.
     std::vector<std::string> facts;
     for (const Verdict& v : verdicts) {
       const bool is_unbounded = v.effect == kUnbounded.name;
       if (v.on && !is_unbounded) facts.push_back(v.effect);
       if (v.decided && !v.on && is_unbounded) facts.push_back("not " + v.effect);
     }
-    fmt::print("effects: no sparse points to tell from, so as configured{}{}\n",
-               facts.empty() ? "" : "; and ", fmt::join(facts, ", "));
+    fmt::print("effects: as configured, because there are no sparse points to inspect{}{}\n",
+               facts.empty() ? "" : "; but ", fmt::join(facts, ", "));
   } else {
     fmt::print("effects that the capture calls for ({:.1f} s):\n{}", event.seconds,
                TableOf(verdicts));
   }
   if (!event.requested.empty()) {
-    fmt::print("as requested, whatever the capture calls for: {}\n",
-               fmt::join(event.requested, ", "));
+    fmt::print("as requested, regardless of the capture: {}\n", fmt::join(event.requested, ", "));
   }
   std::fflush(stdout);
 }
@@ -88,7 +87,7 @@ void TrainingDisplay::Show(const DataPlanned& event) {
   const std::string share =
       plan.stored_pixels == plan.pixels
           ? ""
-          : fmt::format(", of every {:.3g} pixels one at random (data.memory_mb allows no more)",
+          : fmt::format(", a random one of every {:.3g} pixels (limited by data.memory_mb)",
                         static_cast<double>(plan.pixels) / static_cast<double>(plan.stored_pixels));
   Print(
       "{} threads; {} images to train on, {} to validate, {} held out; {}x{} pixels; {} MB of "
@@ -104,7 +103,7 @@ void TrainingDisplay::Show(const EffectsTried& event) {
 }
 
 void TrainingDisplay::Show(const EffectsUndecided& event) {
-  Print("not conclusive, and so as configured: {}\n", fmt::join(event.effects, ", "));
+  Print("inconclusive, therefore as configured: {}\n", fmt::join(event.effects, ", "));
 }
 
 void TrainingDisplay::Show(const BudgetPlanned& event) {
@@ -115,8 +114,8 @@ void TrainingDisplay::Show(const BudgetPlanned& event) {
 void TrainingDisplay::Show(const PosesRefined& event) {
   const PoseRefinementSummary& s = event.summary;
   Print(
-      "poses: cameras turned by {:.3f} degrees in the median ({:.3f} at most) and shifted by "
-      "{:.3g} units ({:.3g}); focal lengths changed by {:.2f} % at most\n",
+      "poses: cameras rotated by {:.3f} degrees (median; maximum {:.3f}) and translated by {:.3g} "
+      "units (maximum {:.3g}); focal lengths changed by at most {:.2f} %\n",
       s.median_degrees, s.max_degrees, s.median_shift, s.max_shift, 100 * s.max_focal);
 }
 
@@ -136,7 +135,7 @@ void TrainingDisplay::Show(const StepTaken& event) {
   rays_per_second_ = keep * rays_per_second_ + (1 - keep) * event.rays_per_second;
   if (!ProgressLine::IsTerminal()) return;
   progress_->Update(done, fmt::format("loss {:.5f}  {:.1f}k rays/s  {}", loss_,
-                                      rays_per_second_ / 1e3, PriceOfQuality(*event.curve)));
+                                      rays_per_second_ / 1e3, QualityAndCost(*event.curve)));
 }
 
 void TrainingDisplay::Show(const TrainingEnded& event) {
@@ -147,7 +146,7 @@ void TrainingDisplay::Show(const TrainingEnded& event) {
                                : "";
   const std::string run = event.run.string();
   if (!summary.finished) {
-    Print("stopped at step {}, saved{}\ngo on with: nerf train --resume -o {}\n", summary.step,
+    Print("stopped at step {}, saved{}\ncontinue with: nerf train --resume -o {}\n", summary.step,
           psnr, run);
     return;
   }

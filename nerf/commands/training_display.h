@@ -7,14 +7,14 @@
 
 namespace nerf {
 
-// What a person sees of a pipeline on the terminal: results on standard output, warnings and
-// progress on standard error. A listener like any other.
+// A pipeline listener that prints to the terminal: results to standard output, warnings and
+// progress to standard error.
 class TrainingDisplay {
  public:
-  //   train  what the progress line counts up to; its steps, or its seconds where a budget decides
   void operator()(const PipelineEvent& event);
 
-  // Before the training begins.
+  // Sets the end of the progress line: train.time_budget if there is one, else train.steps. Call
+  // before training begins.
   void SetGoal(const TrainOptions& train) { train_ = train; }
 
  private:

@@ -1,10 +1,10 @@
-// How OpenMP's threads wait for each other. By default GCC's library lets them spin for
-// milliseconds, which is the fastest while nobody else needs the processor, and very slow where
-// somebody does: two trainings on two cores took four times as long as one. A short spin keeps a
-// training alone as fast, and gives the processor away soon. The library reads its settings once,
-// when it is loaded, before main: so this runs before any library's initialisation and starts the
-// program anew with them in its environment. Whoever sets OMP_WAIT_POLICY or GOMP_SPINCOUNT decides
-// for himself.
+// Sets how OpenMP threads wait for each other. By default GCC's library lets them spin for
+// milliseconds, which is fastest on an idle machine and very slow on a busy one: two trainings on
+// two cores took four times as long as one. With a short spin a single training is as fast, and the
+// processor is soon free for others. The library reads its settings when it is loaded, before main;
+// so this code runs before the initialisation of any library, and restarts the program with the
+// setting in its environment. OMP_WAIT_POLICY and GOMP_SPINCOUNT in the environment take
+// precedence.
 #include <alloca.h>
 #include <unistd.h>
 
@@ -30,7 +30,7 @@ void RestartWithShortWaits(int, char** argv, char** environment) {
   with_setting[count] = const_cast<char*>(kSpinCount);
   with_setting[count + 1] = nullptr;
   execve("/proc/self/exe", argv, with_setting);
-  // Where that fails the program goes on as it is.
+  // If that fails, the program continues with the default.
 }
 
 [[gnu::used, gnu::section(".preinit_array")]] void (*const run_before_libraries)(

@@ -12,9 +12,9 @@ Verdict JudgeMasks(const PhotographFacts& facts) {
   // The surroundings of a subject that was cut out have one colour; content to ignore has many.
   const bool cut_out = facts.masked_spread < kOneColor;
   return Fact(kMasks.name, true, facts.masks,
-              fmt::format("{} of {} photographs have one, {:.1f} % masked out, which {}",
+              fmt::format("{} of {} photographs have a mask; the masked {:.1f} % of the pixels {}",
                           facts.masks, facts.photographs, 100 * facts.masked_out,
-                          cut_out ? "has one colour: empty" : "has content: ignore"),
+                          cut_out ? "have one colour: empty" : "have content: ignore"),
               cut_out ? R"({"meaning": "empty"})" : R"({"meaning": "ignore"})");
 }
 

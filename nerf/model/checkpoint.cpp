@@ -20,7 +20,7 @@ const char* TypeName(torch::Dtype dtype) {
   for (const auto& [name, type] : kTypes) {
     if (type == dtype) return name;
   }
-  TORCH_CHECK(false, "WriteCheckpoint: tensors of type ", dtype, " have no place in it");
+  TORCH_CHECK(false, "WriteCheckpoint: unsupported tensor type ", dtype);
 }
 
 torch::Dtype TypeOf(const std::string& name) {
@@ -33,7 +33,7 @@ torch::Dtype TypeOf(const std::string& name) {
 }  // namespace
 
 void WriteCheckpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  std::vector<torch::Tensor> plain;  // holds what `stored` points at
+  std::vector<torch::Tensor> plain;  // owns the data of `stored`
   std::map<std::string, StoredTensor> stored;
   for (const auto& [name, tensor] : checkpoint.tensors) {
     const torch::Tensor& kept = plain.emplace_back(tensor.detach().contiguous());
@@ -64,8 +64,8 @@ void CopyTensor(const std::map<std::string, torch::Tensor>& tensors, const std::
   if (found == tensors.end() || found->second.sizes() != to.sizes() ||
       found->second.scalar_type() != to.scalar_type()) {
     throw InputError(
-        "checkpoint: tensor {} is missing or of another shape; it was made with another "
-        "configuration",
+        "checkpoint: tensor {} is missing or has another shape; the checkpoint was made with "
+        "another configuration",
         name);
   }
   const torch::NoGradGuard no_grad;

@@ -21,12 +21,13 @@ using nlohmann::json;
 
 constexpr char kOccupancyName[] = "occupancy";
 
-// A hostile file may ask for tables of any size: what is made must be what the file holds.
+// A malicious configuration could request tables of any size, so the sizes of the stored tensors
+// are checked before anything is allocated.
 void CheckSizes(const Config& config, bool with_proposal, const Checkpoint& checkpoint) {
   const auto check = [&](const std::string& name, std::int64_t numbers) {
     const auto found = checkpoint.tensors.find(name);
     if (found == checkpoint.tensors.end() || found->second.numel() != numbers) {
-      throw InputError("checkpoint: {} is not of the size that its configuration asks for", name);
+      throw InputError("checkpoint: the size of {} does not match its configuration", name);
     }
   };
   const auto floats = [](const kernels::HashGridOptions& encoding) {
@@ -55,7 +56,7 @@ Model MakeModel(const Config& config, const SceneFacts& scene) {
   if (config.effects.background) {
     if (scene.has_alpha) {
       throw InputError(
-          "effects.background: photographs with alpha show no background to learn; set "
+          "effects.background: photographs with alpha have no background to learn; set "
           "effects.background=null");
     }
     model.background = std::make_shared<Background>(*config.effects.background, scene.encoding);
@@ -88,13 +89,14 @@ Model CloneModel(const Model& model) {
 std::array<float, 3> GainsOf(const Model& model, const std::string& photograph) {
   if (!model.exposure) {
     throw InputError(
-        "--exposure-of {}: the run simulates no exposures; train with --set effects.exposure={{}}",
+        "--exposure-of {}: the run does not simulate exposures; train with --set "
+        "effects.exposure={{}}",
         photograph);
   }
   const std::vector<std::string>& names = model.scene.photographs;
   const auto found = std::ranges::find(names, photograph);
   if (found == names.end()) {
-    throw InputError("--exposure-of {}: not among the {} photographs of the training; one is {}",
+    throw InputError("--exposure-of {}: not one of the {} training photographs, such as {}",
                      photograph, names.size(), names.front());
   }
   const torch::NoGradGuard no_grad;

@@ -11,23 +11,24 @@ namespace nerf {
 
 struct Checkpoint;
 
-// A model: its modules, and what it knows of its scene. Engines and renderers borrow it.
+// A model: its modules and the facts of its scene. Engines and renderers keep references to it.
 struct Model : ModelParts {
   SceneFacts scene;
 };
 
-// A new model; its parameters start from config.train.seed.
-// Throws InputError where an effect needs what the scene does not have.
+// Creates a model, initialized from config.train.seed.
+// Throws InputError if an effect does not fit the scene.
 Model MakeModel(const Config& config, const SceneFacts& scene);
 
-// A deep copy, which shares nothing with the other.
+// A deep copy.
 Model CloneModel(const Model& model);
 
-// What a photograph's exposure multiplies the field's colours by. Throws InputError where the model
-// simulates no exposures or was not trained on a photograph of that name.
+// The gains of a training photograph's exposure, by channel. Throws InputError if the model does
+// not simulate exposures or was not trained on a photograph of that name.
 std::array<float, 3> GainsOf(const Model& model, const std::string& photograph);
 
-// The model's part of a checkpoint, and back.
+// Writes the model to a checkpoint, and reads it back. Throws InputError if the checkpoint is
+// incomplete or inconsistent.
 void AddModel(const Model& model, Checkpoint& checkpoint);
 Model ModelFromCheckpoint(const Checkpoint& checkpoint);
 

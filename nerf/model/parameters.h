@@ -9,8 +9,8 @@
 
 namespace nerf {
 
-// All that an optimiser moves, by the names that checkpoints use. Apart from model.h, which the
-// commands read, because LibTorch's headers take seconds to compile.
+// All trainable parameters, by their names in checkpoints. Not in model.h, which the commands
+// include, because LibTorch's headers take seconds to compile.
 std::vector<std::pair<std::string, torch::Tensor>> NamedParameters(const Model& model);
 
 }  // namespace nerf

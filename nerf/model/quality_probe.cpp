@@ -10,12 +10,12 @@
 namespace nerf {
 namespace {
 
-// Rows of a strip, a whole number of blocks, and the part of the picture that strips cover.
+// Rows of a strip, a whole number of blocks; the strips cover one part in kPart of the picture.
 constexpr int kStripRows = 16;
 constexpr int kPart = 8;
 
-// Halvings of the range of qualities: to 1/32.
-constexpr int kHalvings = 5;
+// Steps of the bisection of quality: to 1/32.
+constexpr int kBisections = 5;
 
 }  // namespace
 
@@ -24,12 +24,12 @@ QualityProbe::QualityProbe(const ModelSnapshot& model, const ViewRequest& view) 
   const int rows = std::min(kStripRows, camera.height);
   const int count = std::max(1, camera.height / (kPart * rows));
   for (int i = 0; i < count; ++i) {
-    // In the middle of equal parts of the picture.
+    // At the centres of equal parts of the picture.
     const int middle = camera.height * (2 * i + 1) / (2 * count);
     strips_.push_back(
         {CropRows(camera, std::max(0, middle - rows / 2), rows), view.world_from_camera});
   }
-  strips_in_a_frame_ = static_cast<double>(camera.height) / (count * rows);
+  strips_per_frame_ = static_cast<double>(camera.height) / (count * rows);
   exact_ = Render(1, exact_seconds_);
 }
 
@@ -47,7 +47,7 @@ Image QualityProbe::Render(double quality, double& seconds) const {
                    DisplayBackground(scene.has_alpha), scene.encoding);
     to = std::ranges::copy(view.rgb.pixels, to).out;
   }
-  seconds = watch.Seconds() * strips_in_a_frame_;
+  seconds = watch.Seconds() * strips_per_frame_;
   return all;
 }
 
@@ -63,7 +63,7 @@ MeasuredQuality QualityProbe::Choose(double seconds) const {
   MeasuredQuality best = Measure(0);
   if (best.seconds > seconds) return best;
   double too_slow = 1;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kBisections; ++i) {
     const MeasuredQuality tried = Measure((best.quality + too_slow) / 2);
     if (tried.seconds <= seconds) {
       best = tried;

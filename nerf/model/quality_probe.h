@@ -7,26 +7,26 @@
 
 namespace nerf {
 
-// A rendering quality, with what it costs and loses in a view.
+// A rendering quality with its cost and its error in a view.
 struct MeasuredQuality {
   double quality = 1;
-  double seconds = 0;  // a frame
-  double psnr = 0;  // dB, against the exact picture of the same view; infinite where they are equal
+  double seconds = 0;  // per frame
+  double psnr = 0;     // dB, relative to the exact rendering; infinite if they are equal
 };
 
-// Measures on strips of a view, about an eighth of it, how long rendering qualities take and how
-// far they are from the exact picture.
+// Measures the time of rendering qualities, and their error relative to exact rendering, on strips
+// of a view, about an eighth of it.
 class QualityProbe {
  public:
-  // `model` must outlive it. Renders the strips exactly.
-  //   view  its camera and pose
+  // Renders the exact strips. `model` must outlive it.
+  //   view  only camera and pose are used
   QualityProbe(const ModelSnapshot& model, const ViewRequest& view);
 
   // Throws InputError where quality is not in [0, 1].
   MeasuredQuality Measure(double quality) const;
 
-  // The best quality at which a frame takes at most `seconds`, found by halving; the fast end where
-  // none does.
+  // The highest quality at which a frame takes at most `seconds`, by bisection; quality 0 if none
+  // does.
   MeasuredQuality Choose(double seconds) const;
 
  private:
@@ -34,7 +34,7 @@ class QualityProbe {
 
   const ModelSnapshot& model_;
   std::vector<ViewRequest> strips_;
-  double strips_in_a_frame_ = 1;
+  double strips_per_frame_ = 1;
   Image exact_;
   double exact_seconds_ = 0;
 };

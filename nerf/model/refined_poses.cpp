@@ -14,7 +14,7 @@ PosedImages RefinedPoses(const Model& model, PosedImages posed) {
   const std::vector<std::string>& names = model.scene.photographs;
   for (PosedImage& image : posed.images) {
     const auto found = std::ranges::find(names, image.name);
-    if (found == names.end()) continue;  // held out: as it was
+    if (found == names.end()) continue;  // held out: no refined pose
     image.world_from_camera = normalized_from_world.WorldFromCamera(model.pose_refinement->Refined(
         found - names.begin(),
         normalized_from_world.NormalizedFromCamera(image.world_from_camera)));
@@ -22,9 +22,9 @@ PosedImages RefinedPoses(const Model& model, PosedImages posed) {
   const torch::Tensor factors = model.pose_refinement->LogFocals().detach().exp();
   for (std::size_t k = 0; k < posed.cameras.size(); ++k) {
     const auto lens = static_cast<std::int64_t>(k);
-    if (lens >= factors.size(0)) break;  // of photographs that are held out
+    if (lens >= factors.size(0)) break;  // only held-out photographs use it
     Camera& camera = posed.cameras[k];
-    const int focals = FirstDistortionParam(camera.model) - 2;  // the principal point's two
+    const int focals = FirstDistortionParam(camera.model) - 2;  // two are the principal point
     for (int i = 0; i < focals; ++i) camera.params[i] *= factors[lens].item<double>();
   }
   return posed;

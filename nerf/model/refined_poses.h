@@ -5,10 +5,10 @@
 
 namespace nerf {
 
-// The photographs as a model with refined poses knows them, in the input's frame and units: poses
-// of those that it was trained on, focal lengths of the lenses that took them, and so of
-// photographs that were held out, too. Focal lengths count as those of a lens without distortion.
-// The same where the model refines none.
+// Applies a model's pose refinement to its photographs, in the input's frame and units: to the
+// poses of training photographs and to the focal lengths of all lenses, which held-out photographs
+// share. Focal lengths are scaled as for a lens without distortion. Returns `posed` unchanged if
+// the model has no pose refinement.
 PosedImages RefinedPoses(const Model& model, PosedImages posed);
 
 }  // namespace nerf

@@ -19,7 +19,7 @@ fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
 
 Checkpoint ReadRunCheckpoint(const fs::path& run) {
   if (!fs::exists(CheckpointPath(run))) {
-    throw InputError("{}: holds no checkpoint.nerf; train first: nerf train INPUT -o {}",
+    throw InputError("{}: contains no checkpoint.nerf; train first: nerf train INPUT -o {}",
                      run.string(), run.string());
   }
   return ReadCheckpoint(CheckpointPath(run));

@@ -11,20 +11,21 @@
 
 namespace nerf {
 
-// What a model must know of its scene, beside its parameters.
+// The facts of a scene that a model needs beside its parameters.
 struct SceneFacts {
   ColorEncoding encoding = ColorEncoding::kSrgb;
   bool has_alpha = false;
   SceneNormalization normalized_from_world;
-  std::vector<std::string> photographs = {};  // that it is trained on, by name
-  std::vector<CameraPlace> places = {};       // where they were taken, for pose refinement
-  // Their exposures to begin with, log2 of light; empty: unknown. Not stored in checkpoints.
+  std::vector<std::string> photographs = {};  // names of the training photographs
+  std::vector<CameraPlace> places = {};       // their cameras, for pose refinement
+  // Their initial exposures, log2 of light; empty: unknown. Not stored in checkpoints.
   std::vector<double> exposure_stops = {};
 };
 
 SceneFacts FactsOf(const Dataset& data, const SceneNormalization& normalized_from_world);
 
-// As checkpoints hold them. Reading throws nlohmann::json::exception where a key is missing.
+// Conversion to the JSON of checkpoints and back. SceneFromJson throws nlohmann::json::exception if
+// a key is missing.
 nlohmann::json JsonFromScene(const SceneFacts& scene);
 SceneFacts SceneFromJson(const nlohmann::json& scene);
 

@@ -26,15 +26,15 @@ RenderedView ModelSnapshot::Render(const ViewRequest& view) const {
 }
 
 std::shared_ptr<const ModelSnapshot> SnapshotSlot::Latest() {
-  wanted_ = true;
+  requested_ = true;
   const std::lock_guard lock(mutex_);
   return latest_;
 }
 
-bool SnapshotSlot::IsWanted() const { return wanted_; }
+bool SnapshotSlot::IsRequested() const { return requested_; }
 
 void SnapshotSlot::Publish(std::shared_ptr<const ModelSnapshot> snapshot) {
-  wanted_ = false;
+  requested_ = false;
   const std::lock_guard lock(mutex_);
   latest_ = std::move(snapshot);
 }

@@ -22,23 +22,23 @@ struct ViewRequest {
   std::function<void(std::int64_t)> progress = {};
 };
 
-// A model that never changes: one step of a training, or a trained run. All members are const and
-// safe from any thread, while training goes on too.
+// An immutable model: one step of a training, or a trained run. All members are const and
+// thread-safe, also during training.
 class ModelSnapshot {
  public:
-  // Takes over a model that nobody else changes.
+  // Takes ownership of a model, whose modules must not be shared.
   ModelSnapshot(Model model, std::int64_t step);
-  ModelSnapshot(const ModelSnapshot&) = delete;  // the renderer borrows the model
+  ModelSnapshot(const ModelSnapshot&) = delete;  // the renderer has a reference to the model
   ModelSnapshot& operator=(const ModelSnapshot&) = delete;
 
-  // A deep copy of a model between two steps of its training.
+  // A snapshot of a model in training, between two steps; copies its modules.
   static std::shared_ptr<const ModelSnapshot> Copy(const Model& model, std::int64_t step);
 
-  // Pixels that the lens does not reach, and transparent ones, show the display background (white
-  // where photographs have alpha, else black). Depth is along the ray, in normalized scene units.
-  // Throws InputError where quality is not in [0, 1].
+  // Pixels outside the lens's field of view, and transparent ones, have the display background
+  // (white if photographs have alpha, else black). Depth is along the ray, in normalized units.
+  // Throws InputError if quality is not in [0, 1].
   RenderedView Render(const ViewRequest& view) const;
-  // The rays' own renderer, for those who need more than views; must not outlive the snapshot.
+  // The renderer of rays; must not outlive the snapshot.
   std::shared_ptr<const RayRenderer> Renderer(double quality = 1) const;
 
   const Model& GetModel() const { return model_; }
@@ -51,19 +51,19 @@ class ModelSnapshot {
   const std::shared_ptr<const RayRenderer> exact_;
 };
 
-// Hands snapshots from a training to those who look at it: they ask, and the training thread
-// publishes one after its current step. A training that nobody looks at copies nothing.
+// Passes snapshots from the training thread to viewers on request: after a request, the training
+// thread publishes one snapshot at the end of its step. Without requests nothing is copied.
 class SnapshotSlot {
  public:
-  // The latest snapshot, null before the first; and asks for a newer one.
+  // Returns the latest snapshot, null before the first, and requests a newer one.
   std::shared_ptr<const ModelSnapshot> Latest();
 
-  // For the training thread: whether a snapshot is asked for; then Publish.
-  bool IsWanted() const;
+  // For the training thread: publish a snapshot if one is requested.
+  bool IsRequested() const;
   void Publish(std::shared_ptr<const ModelSnapshot> snapshot);
 
  private:
-  std::atomic<bool> wanted_ = false;
+  std::atomic<bool> requested_ = false;
   mutable std::mutex mutex_;
   std::shared_ptr<const ModelSnapshot> latest_;
 };

@@ -6,20 +6,21 @@
 
 namespace nerf {
 
-// What a time budget is best spent on, on this machine.
+// The best preset for a time budget on this machine.
 struct BudgetPlan {
   std::string preset;  // "fast", "balanced" or "accurate"
-  double steps = 0;    // that there is time for, about
+  double steps = 0;    // approximate number of steps in the budget
 };
 
-// Where there is time for few steps, the many small ones of `fast` learn more than those of
-// `balanced`; where there is time for more than small hash tables make use of, `accurate` does.
-//   seconds          what is left of the budget
-//   seconds_a_step   of the preset balanced
-BudgetPlan PlanFor(double seconds, double seconds_a_step);
+// Chooses a preset by the number of steps of `balanced` that fit: `fast` makes more and smaller
+// steps, which is better for few steps; `accurate` has larger hash tables, which is better for
+// many.
+//   seconds           remaining time budget
+//   seconds_per_step  of the preset `balanced`
+BudgetPlan PlanFor(double seconds, double seconds_per_step);
 
-// PlanFor the speed of a trainer of the preset `balanced`: times some of its steps (they are its
-// first, and not lost where that preset is chosen).
+// PlanFor the measured speed of a trainer of the preset `balanced`. Takes its first steps, which
+// count if that preset is chosen.
 BudgetPlan PlanBudget(Trainer& balanced, double seconds);
 
 }  // namespace nerf

@@ -8,23 +8,25 @@
 namespace nerf {
 namespace {
 
-// Properties of the photographs are not chosen.
-bool IsChosen(const Verdict& verdict) { return verdict.effect != kAlpha && verdict.effect != kHdr; }
+// Whether a verdict is a decision; alpha and HDR are properties of the photographs.
+bool IsDecision(const Verdict& verdict) {
+  return verdict.effect != kAlpha && verdict.effect != kHdr;
+}
 
 }  // namespace
 
 EffectDecisions::EffectDecisions(const Inspection& inspection, std::set<std::string> requested)
     : verdicts_(inspection.verdicts), requested_(std::move(requested)) {
   for (const Verdict& verdict : verdicts_) {
-    if (!IsChosen(verdict) || requested_.contains(verdict.effect) || !verdict.IsConclusive())
+    if (!IsDecision(verdict) || requested_.contains(verdict.effect) || !verdict.IsConclusive())
       continue;
     assignments_.push_back(verdict.assignment);
   }
 }
 
-bool EffectDecisions::IsOpen(const EffectDescriptor& effect) const {
+bool EffectDecisions::ShouldTry(const EffectDescriptor& effect) const {
   return std::ranges::any_of(verdicts_, [&](const Verdict& verdict) {
-    return verdict.effect == effect.name && nerf::IsOpen(verdict, requested_);
+    return verdict.effect == effect.name && nerf::ShouldTry(verdict, requested_);
   });
 }
 
@@ -32,9 +34,9 @@ void EffectDecisions::DisableBackgroundForAlpha(const PipelineListener& listener
   const auto find = [&](const EffectDescriptor& effect) {
     return std::ranges::find(verdicts_, effect.name, &Verdict::effect);
   };
-  const auto replace = [&](Verdict& verdict, bool on, const char* why) {
+  const auto replace = [&](Verdict& verdict, bool on, const char* evidence) {
     if (requested_.contains(verdict.effect)) return;
-    verdict = Fact(verdict.effect, on, 0, why);
+    verdict = Fact(verdict.effect, on, 0, evidence);
     assignments_.push_back(verdict.assignment);
     listener(VerdictReached{verdict});
   };
@@ -45,20 +47,20 @@ void EffectDecisions::DisableBackgroundForAlpha(const PipelineListener& listener
     return;
   }
   if (background->on && unbounded != end && !unbounded->on) {
-    replace(*unbounded, true, "no background is learned that would hold what is far");
+    replace(*unbounded, true, "distant points need contracted space without a learned background");
   }
-  replace(*background, false, "some photograph has alpha, and shows none");
+  replace(*background, false, "some photographs have alpha and therefore no background");
 }
 
-void EffectDecisions::Try(const Config& config, const SceneFacts& scene, double seconds_left,
-                          Dataset& data, const PipelineListener& listener) {
+void EffectDecisions::RunTrials(const Config& config, const SceneFacts& scene, double seconds_left,
+                                Dataset& data, const PipelineListener& listener) {
   const EffectTrials trials =
       RunEffectTrials(config, scene, requested_, seconds_left, data, verdicts_, listener);
   assignments_.insert(assignments_.end(), trials.assignments.begin(), trials.assignments.end());
   trial_seconds_ = trials.seconds;
   EffectsUndecided undecided;
   for (const Verdict& v : verdicts_) {
-    if (IsChosen(v) && nerf::IsOpen(v, requested_)) undecided.effects.push_back(v.effect);
+    if (IsDecision(v) && nerf::ShouldTry(v, requested_)) undecided.effects.push_back(v.effect);
   }
   if (!undecided.effects.empty()) listener(undecided);
 }

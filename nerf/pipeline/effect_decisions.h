@@ -12,32 +12,33 @@
 
 namespace nerf {
 
-// Which effects a run simulates that the user has not named: conclusive verdicts are applied,
-// undecided ones are tried where there is time.
+// Decides the effects of a run that the user has not decided: conclusive verdicts are applied,
+// inconclusive effects are tried if there is time.
 class EffectDecisions {
  public:
-  // As configured.
+  // No decisions: effects are as configured.
   EffectDecisions() = default;
-  //   requested  effects that the user decides
+  // Applies the conclusive verdicts.
+  //   requested  effects that the user has decided
   EffectDecisions(const Inspection& inspection, std::set<std::string> requested);
 
-  // Whether an effect is to be tried.
-  bool IsOpen(const EffectDescriptor& effect) const;
+  // Whether a trial should decide an effect.
+  bool ShouldTry(const EffectDescriptor& effect) const;
 
-  // Photographs turned out to have alpha, of which too little was seen when a few were inspected:
-  // then no background is learned, and contracted space holds what is far.
+  // For photographs with alpha that the inspection of a few of them did not find: turns
+  // `background` off, and `unbounded` on to represent distant points.
   void DisableBackgroundForAlpha(const PipelineListener& listener);
 
-  // Decides what is open by paired trials (nerf/pipeline/effect_trials.h).
-  //   seconds_left  of the time budget, where there is one
-  void Try(const Config& config, const SceneFacts& scene, double seconds_left, Dataset& data,
-           const PipelineListener& listener);
+  // Decides inconclusive effects by paired trials (nerf/pipeline/effect_trials.h).
+  //   seconds_left  of the time budget, if there is one
+  void RunTrials(const Config& config, const SceneFacts& scene, double seconds_left, Dataset& data,
+                 const PipelineListener& listener);
 
-  // What was decided so far, as --set takes it.
+  // The decisions so far, in the form of --set.
   const std::vector<std::string>& Assignments() const { return assignments_; }
   const std::set<std::string>& Requested() const { return requested_; }
 
-  // RUN/effects.json: the verdicts with their evidence, who decided, and what is simulated.
+  // The content of RUN/effects.json: verdicts with their evidence, decisions, simulated effects.
   nlohmann::json Report(const Config& config, double inspection_seconds) const;
 
  private:

@@ -11,27 +11,28 @@
 namespace nerf {
 namespace {
 
-// The photographs, with those held out as validation photographs.
-PosedImages ValidatedOnHeldOut(const std::filesystem::path& poses) {
+// The photographs of a run, with the held-out ones as the validation split.
+PosedImages ReadWithHeldOutAsValidation(const std::filesystem::path& poses) {
   PosedImages posed = sfm::ReadTransformsJson(poses);
-  bool any = false;
+  bool any_held_out = false;
   for (PosedImage& image : posed.images) {
     if (image.split == Split::kValidation) image.split = Split::kTrain;
     if (image.split == Split::kTest) image.split = Split::kValidation;
-    any = any || image.split == Split::kValidation;
+    any_held_out = any_held_out || image.split == Split::kValidation;
   }
-  if (!any) {
-    throw InputError("{}: no photograph is held out to measure effects on; take 8 at least",
-                     poses.string());
+  if (!any_held_out) {
+    throw InputError(
+        "{}: no photograph is held out to measure effects on; use at least 8 photographs",
+        poses.string());
   }
   return posed;
 }
 
-// Of masks that mean empty there is nothing to measure: what they hide is not of the scene.
+// Masks with the meaning `empty` define the scene, so there is no result without them.
 bool IsMeasurable(const EffectsOptions& effects, const EffectDescriptor& effect) {
-  const bool empties =
+  const bool defines_scene =
       &effect == &kMasks && effects.masks && effects.masks->meaning == MaskMeaning::kEmpty;
-  return Simulates(effects, effect) && !empties;
+  return Simulates(effects, effect) && !defines_scene;
 }
 
 }  // namespace
@@ -41,13 +42,13 @@ std::vector<EffectMeasurement> MeasureEffects(
     const std::function<void(std::size_t, std::size_t, const EffectDescriptor&)>& progress) {
   const Model& model = run.model->GetModel();
   const SceneNormalization& normalized_from_world = model.scene.normalized_from_world;
-  const PosedImages posed = ValidatedOnHeldOut(run.posed.source);
+  const PosedImages posed = ReadWithHeldOutAsValidation(run.posed.source);
   const std::filesystem::path folder = run.posed.source.parent_path();
   Dataset data = LoadPhotographs(posed, model.config, normalized_from_world, folder, listener);
   const auto train = [&](const Config& config, const Dataset& photographs) {
     return TrainShortly(config, FactsOf(photographs, normalized_from_world), photographs, steps);
   };
-  // Without masks what they hide is trained on; measured are the same pixels.
+  // Without masks, training includes the masked pixels; validation is on the same pixels.
   const auto train_without = [&](const EffectDescriptor& effect) {
     const Config without = WithEffect(model.config, effect, false);
     if (&effect != &kMasks) return train(without, data);
@@ -64,7 +65,7 @@ std::vector<EffectMeasurement> MeasureEffects(
     std::optional<HeldOutHalves> halves;
     if (effect->measured_on_halves) halves.emplace(data);
     if (halves && halves->Count() == 0) halves.reset();
-    // With and without in turn, so that both see the same load on the machine.
+    // Alternating, so that both are measured under the same load.
     const ShortTraining with = train(model.config, data);
     progress(2 * all.size() + 1, 2 * effects.size(), *effect);
     all.push_back({effect, with, train_without(*effect), halves.has_value()});

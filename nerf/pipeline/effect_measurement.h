@@ -10,20 +10,20 @@
 
 namespace nerf {
 
-// What an effect gains and costs.
+// The gain and the cost of an effect.
 struct EffectMeasurement {
   const EffectDescriptor* effect = nullptr;
   ShortTraining with, without;
-  // Measured on halves of photographs whose other halves are trained on, and not on held-out
-  // photographs (EffectDescriptor::measured_on_halves).
+  // Measured on the right halves of photographs whose left halves are trained on, instead of
+  // held-out photographs (EffectDescriptor::measured_on_halves).
   bool on_halves = false;
 };
 
-// Measures each effect that a run simulates: short trainings in pairs, with all of its effects and
-// without one, compared on the held-out photographs.
+// Measures each effect that a run simulates by paired short trainings, with all effects of the run
+// and with one turned off, compared on the held-out photographs.
 //   steps     of each training
-//   progress  called with the number of trainings done, of how many, and the effect
-// Throws InputError where the photographs are not there or none is held out.
+//   progress  called with the number of finished trainings, their total, and the effect
+// Throws InputError if photographs are missing or none is held out.
 std::vector<EffectMeasurement> MeasureEffects(
     const OpenedRun& run, int steps, const PipelineListener& listener,
     const std::function<void(std::size_t, std::size_t, const EffectDescriptor&)>& progress);

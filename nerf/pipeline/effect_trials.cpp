@@ -15,16 +15,16 @@
 namespace nerf {
 namespace {
 
-constexpr std::int64_t kSamples = 16384;  // a step
+constexpr std::int64_t kSamples = 16384;  // per step
 constexpr double kGain = 0.2;             // dB, more than the noise of a trial
-// Of the training, that trials may take: where the evidence is not conclusive, and where there is
-// none and they are most often for nothing. While a field learns fast, as the chair in its first
-// minutes, a twentieth of the time is a tenth of a decibel.
+// The share of the training that trials may take: with inconclusive evidence, and with none, where
+// trials rarely change anything. While quality rises quickly (the chair in its first minutes), a
+// twentieth of the time is worth a tenth of a decibel.
 constexpr double kShare = 1.0 / 7, kShareWithoutEvidence = 1.0 / 20;
-constexpr double kFastest = 0.01;          // seconds of a step, while no more is known
-constexpr std::size_t kFewestHeldOut = 2;  // on one photograph a difference is chance
+constexpr double kFastestStep = 0.01;      // seconds, assumed before a step was timed
+constexpr std::size_t kFewestHeldOut = 2;  // a difference on one photograph is not significant
 
-// A training that diverges is the worst there is.
+// As TrainShortly, with a PSNR of minus infinity if training diverges.
 ShortTraining TrainShortlyOrDiverge(const Config& config, const SceneFacts& scene,
                                     const Dataset& data, int steps) {
   try {
@@ -36,17 +36,17 @@ ShortTraining TrainShortlyOrDiverge(const Config& config, const SceneFacts& scen
   }
 }
 
-// Estimated seconds of a step; 0 where training diverges, as trying it will show.
+// Estimated seconds per step; 0 if training diverges, which the trial will report.
 double EstimateOrZero(const Config& config, const SceneFacts& scene, const Dataset& data,
                       int steps) {
   try {
-    return EstimateSecondsOfAStep(config, scene, data, steps);
+    return EstimateSecondsPerStep(config, scene, data, steps);
   } catch (const NonFiniteError&) {
     return 0;
   }
 }
 
-// The trials of one capture: `best` is the configuration with what was decided so far.
+// The trials of one capture. `best_` is the configuration with the decisions so far.
 class Trials {
  public:
   Trials(const Config& config, const SceneFacts& scene, double seconds_left, const Dataset& data)
@@ -61,14 +61,14 @@ class Trials {
   bool HasTimeFor(const EffectDescriptor& effect, bool has_evidence) {
     const int steps = effect.trial_steps;
     const int needed = psnr_of_best_.contains(steps) ? steps : 2 * steps;
-    const auto fits = [&](double each) {
-      return allowance_.Has(needed, each, has_evidence ? kShare : kShareWithoutEvidence,
-                            watch_.Seconds());
+    const auto fits = [&](double seconds_per_step) {
+      return allowance_.Allows(needed, seconds_per_step,
+                               has_evidence ? kShare : kShareWithoutEvidence, watch_.Seconds());
     };
-    if (!fits(seconds_a_step_ == 0 ? kFastest : seconds_a_step_)) return false;
-    if (seconds_a_step_ > 0 || !allowance_.IsByTheClock()) return true;
-    seconds_a_step_ = EstimateOrZero(best_, scene_, data_, steps);
-    return fits(seconds_a_step_);
+    if (!fits(seconds_per_step_ == 0 ? kFastestStep : seconds_per_step_)) return false;
+    if (seconds_per_step_ > 0 || !allowance_.UsesClock()) return true;
+    seconds_per_step_ = EstimateOrZero(best_, scene_, data_, steps);
+    return fits(seconds_per_step_);
   }
 
   struct Result {
@@ -79,17 +79,17 @@ class Trials {
     const int steps = effect.trial_steps;
     Result result;
     result.was_on = Simulates(best_.effects, effect);
-    other_ = WithEffect(best_, effect, !result.was_on);
+    alternative_ = WithEffect(best_, effect, !result.was_on);
     if (!psnr_of_best_.contains(steps)) psnr_of_best_[steps] = PsnrOf(best_, steps);
-    psnr_of_other_ = PsnrOf(other_, steps);
-    result.with = result.was_on ? psnr_of_best_[steps] : psnr_of_other_;
-    result.without = result.was_on ? psnr_of_other_ : psnr_of_best_[steps];
+    psnr_of_alternative_ = PsnrOf(alternative_, steps);
+    result.with = result.was_on ? psnr_of_best_[steps] : psnr_of_alternative_;
+    result.without = result.was_on ? psnr_of_alternative_ : psnr_of_best_[steps];
     return result;
   }
-  // The configuration that was compared with the best becomes the best.
-  void TakeOther(const EffectDescriptor& effect) {
-    best_ = other_;
-    psnr_of_best_ = {{effect.trial_steps, psnr_of_other_}};
+  // Makes the alternative of the last Compare the best configuration.
+  void AcceptAlternative(const EffectDescriptor& effect) {
+    best_ = alternative_;
+    psnr_of_best_ = {{effect.trial_steps, psnr_of_alternative_}};
   }
 
   double Seconds() const { return watch_.Seconds(); }
@@ -98,7 +98,7 @@ class Trials {
   double PsnrOf(const Config& config, int steps) {
     allowance_.Count(steps);
     const ShortTraining result = TrainShortlyOrDiverge(config, scene_, data_, steps);
-    if (result.seconds > 0) seconds_a_step_ = result.seconds / steps;
+    if (result.seconds > 0) seconds_per_step_ = result.seconds / steps;
     return result.psnr;
   }
 
@@ -106,15 +106,15 @@ class Trials {
   const Dataset& data_;
   const Stopwatch watch_;
   TrialAllowance allowance_;
-  Config best_, other_;
-  double psnr_of_other_ = 0;
-  double seconds_a_step_ = 0;           // not known yet
-  std::map<int, double> psnr_of_best_;  // after so many steps
+  Config best_, alternative_;
+  double psnr_of_alternative_ = 0;
+  double seconds_per_step_ = 0;         // 0: not measured yet
+  std::map<int, double> psnr_of_best_;  // by number of steps
 };
 
 }  // namespace
 
-bool IsOpen(const Verdict& verdict, const std::set<std::string>& requested) {
+bool ShouldTry(const Verdict& verdict, const std::set<std::string>& requested) {
   if (verdict.IsConclusive() || requested.contains(verdict.effect)) return false;
   const EffectDescriptor* const effect = FindEffect(verdict.effect);
   return verdict.decided || (effect != nullptr && effect->tried_without_evidence);
@@ -131,18 +131,18 @@ EffectTrials RunEffectTrials(const Config& config, const SceneFacts& scene,
   bool has_begun = false;
   for (Verdict& verdict : verdicts) {
     const EffectDescriptor* const effect = FindEffect(verdict.effect);
-    if (effect == nullptr || !IsOpen(verdict, requested)) continue;
+    if (effect == nullptr || !ShouldTry(verdict, requested)) continue;
     if (!trials.HasTimeFor(*effect, verdict.decided)) continue;
     has_begun = true;
     const auto [was_on, with, without] = trials.Compare(*effect);
     if (!std::isfinite(with - without)) {
-      listener(Warning{fmt::format("effects: a trial of {} diverged, so it stays as configured",
-                                   verdict.effect)});
+      listener(Warning{fmt::format(
+          "effects: a trial of {} diverged, so the effect stays as configured", verdict.effect)});
       continue;
     }
-    // What is configured stays unless the other is clearly better.
+    // The configured setting is kept unless the alternative is clearly better.
     verdict = FromTrial(verdict, with, without, was_on ? -kGain : kGain);
-    if (verdict.on != was_on) trials.TakeOther(*effect);
+    if (verdict.on != was_on) trials.AcceptAlternative(*effect);
     result.assignments.push_back(verdict.assignment);
     listener(VerdictReached{verdict});
   }

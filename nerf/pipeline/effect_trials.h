@@ -14,23 +14,23 @@ namespace nerf {
 
 // The result of trials of effects.
 struct EffectTrials {
-  std::vector<std::string> assignments;  // what they decided
+  std::vector<std::string> assignments;  // the decisions, in the form of --set
   double seconds = 0;
 };
 
-// Whether a verdict is to be tried: not conclusive, and not of the user's choosing. Without any
-// evidence only effects are tried that are worth it (EffectDescriptor::tried_without_evidence).
-//   requested  effects that the user decides
-bool IsOpen(const Verdict& verdict, const std::set<std::string>& requested);
+// Whether an effect should be tried: its verdict is inconclusive and the user has not decided it.
+// Without any evidence only some effects are tried (EffectDescriptor::tried_without_evidence).
+//   requested  effects that the user has decided
+bool ShouldTry(const Verdict& verdict, const std::set<std::string>& requested);
 
-// Decides what the evidence left open by paired trials, with the effect and without it: short
-// trainings, measured on halves of some photographs, which are held out meanwhile (HeldOutHalves).
-// Writes the results into the verdicts, and reports them. All trials together take no more than a
-// seventh of the training, and without evidence no more than a twentieth; where that is too short,
-// or photographs are too few, what is open stays as configured.
-//   verdicts      those that are open (IsOpen) are tried
-//   seconds_left  of the time budget, where there is one
-//   data          is as it was afterwards; has sparse depths where depth supervision is open
+// Decides inconclusive effects by paired trials, with and without the effect: short trainings,
+// compared on halves of some photographs that are held out meanwhile (HeldOutHalves). Updates the
+// verdicts and reports them. All trials together take at most a seventh of the training, trials
+// without evidence at most a twentieth. If that is too short, or there are too few photographs,
+// effects stay as configured.
+//   verdicts      those of ShouldTry are tried
+//   seconds_left  of the time budget, if there is one
+//   data          unchanged afterwards; needs sparse depths if depth supervision is tried
 EffectTrials RunEffectTrials(const Config& config, const SceneFacts& scene,
                              const std::set<std::string>& requested, double seconds_left,
                              Dataset& data, std::vector<Verdict>& verdicts,

@@ -28,7 +28,7 @@ EffectsRequest ParseEffects(const std::string& text) {
     const EffectDescriptor* const effect = FindEffect(word.substr(on || off ? 1 : 0));
     if ((!on && !off) || effect == nullptr) {
       throw InputError(
-          "--effects {}: '{}' is no effect with a sign; use auto, config, or a list like "
+          "--effects {}: '{}' is not + or - and an effect; use auto, config, or a list like "
           "+exposure,-view_dependence of {}",
           text, word, fmt::join(EffectNames(), ", "));
     }

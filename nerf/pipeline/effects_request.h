@@ -8,9 +8,9 @@
 
 namespace nerf {
 
-// What the user decides about the effects of a run.
+// The user's decisions about the effects of a run.
 struct EffectsRequest {
-  // Whether the capture is inspected, for all effects that the user does not name. Otherwise they
+  // Whether inspection and trials decide the effects that the user does not name; otherwise they
   // are as configured.
   bool inspect = true;
   struct Choice {
@@ -19,13 +19,13 @@ struct EffectsRequest {
   };
   std::vector<Choice> choices;
 
-  // The choices as --set takes them.
+  // The choices in the form of --set.
   std::vector<std::string> Assignments() const;
 };
 
-// "auto", "config" (as configured, without an inspection), or a list such as
-// "+exposure,-view_dependence", whose other effects stay automatic.
-// Throws InputError naming an effect that does not exist.
+// Parses the value of --effects: "auto", "config" (as configured, without inspection), or a list
+// such as "+exposure,-view_dependence", with all other effects automatic.
+// Throws InputError naming an unknown effect.
 EffectsRequest ParseEffects(const std::string& text);
 
 }  // namespace nerf

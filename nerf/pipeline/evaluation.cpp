@@ -14,19 +14,19 @@
 namespace nerf {
 namespace {
 
-// Nobody knows the exposure of a photograph that training never saw: it is fitted, one gain a
-// channel.
+// Multiplies a view by the gains that fit it to its photograph, whose exposure is unknown if it was
+// held out.
 void FitExposure(const Image& truth, const Eigen::Vector3f& background, RenderedView& view) {
   const Image shown = view.rgb.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
-  const std::vector<float> through =
+  const std::vector<float> behind =
       BackgroundContribution(view.opacity.pixels, {background.data(), 3});
   std::vector<float>& rgb = view.rgb.pixels;
-  ApplyGains(FitGains(rgb, shown.pixels, through, view.rgb.encoding), through, rgb);
+  ApplyGains(FitGains(rgb, shown.pixels, behind, view.rgb.encoding), behind, rgb);
 }
 
-// Where a mask says to ignore what a photograph shows, the rendering counts as right.
-//   whole    pixels that count; empty: all
-//   returns  the decibels by which the PSNR of the whole picture is better than that of those
+// Replaces the pixels of the rendering that a mask ignores by those of the photograph.
+//   whole    pixels that are not ignored; empty: all
+//   returns  dB by which this raises the PSNR of the whole image over that of these pixels
 double IgnoreMasked(const std::vector<std::uint32_t>& whole, const Image& truth, Image& rendered) {
   if (whole.empty()) return 0;
   Image counted = rendered.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;

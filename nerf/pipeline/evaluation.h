@@ -13,24 +13,24 @@ namespace nerf {
 
 struct EvaluationOptions {
   double quality = 1;  // of rendering, see RenderQuality::Of
-  // Compare each rendering at its photograph's own exposure, fitted: always done for models that
-  // simulate exposures.
+  // Render each view at the exposure fitted to its photograph. Always done for models that simulate
+  // exposures.
   bool fit_exposure = false;
-  std::optional<int> downscale;  // of the photographs; the training's where it is not set
+  std::optional<int> downscale;  // of the photographs; nullopt: as in training
 };
 
-// A rendered view against its photograph.
+// The score of a rendered view against its photograph.
 struct ViewScore {
   std::string name;
-  double psnr = 0, ssim = 0;  // PSNR in dB, over the pixels that no mask ignores
-  double seconds = 0;         // of rendering
+  double psnr = 0, ssim = 0;  // PSNR in dB, without pixels that a mask ignores
+  double seconds = 0;         // rendering time
 };
 
-// What the views took, all together.
+// The cost of all views together.
 struct RenderCost {
   std::int64_t views = 0, pixels = 0, samples = 0;
   StageSeconds seconds;
-  double reading = 0;  // seconds, of photographs
+  double reading = 0;  // seconds for reading photographs
 
   void Add(const RenderedView& view);
   double SamplesPerRay() const {
@@ -47,26 +47,26 @@ struct Evaluation {
   std::vector<std::string> unreadable;  // photographs that could not be read, with the reason
   bool exposure_fitted = false;
 
-  ViewScore Mean() const;  // of one score at least
+  ViewScore Mean() const;  // needs at least one score
 };
 
-// What a listener sees of each view; the images live until it returns.
+// A view as reported to a listener; the images are valid during the call.
 struct EvaluatedView {
   const PosedImage* image = nullptr;
-  const Image* truth = nullptr;      // on white where it has alpha
-  const Image* rendering = nullptr;  // at the photograph's exposure where that is fitted; pixels
-                                     // that a mask ignores are the truth's
+  const Image* truth = nullptr;      // composited on white if it has alpha
+  const Image* rendering = nullptr;  // at the fitted exposure, if it is fitted; pixels that a mask
+                                     // ignores are those of the truth
   const ViewScore* score = nullptr;
 };
 
 // The images of a split.
 std::vector<const PosedImage*> ImagesOf(const PosedImages& posed, Split split);
 
-// Renders views of photographs and compares them, as pictures would be saved: the one loop of
+// Renders the views of photographs and scores them as they would be saved (8-bit sRGB). Used by
 // `nerf eval` and `nerf study`.
-//   posed   as OpenRun or the training have it
-//   images  of `posed`
-// Throws InputError where quality is not in [0, 1].
+//   posed   from OpenRun or the training
+//   images  point into `posed`
+// Throws InputError if quality is not in [0, 1].
 Evaluation Evaluate(const ModelSnapshot& model, const PosedImages& posed,
                     const std::vector<const PosedImage*>& images, const EvaluationOptions& options,
                     const std::function<void(const EvaluatedView&)>& listener = {});

@@ -18,14 +18,13 @@
 
 namespace nerf {
 
-// What the pipeline reports on its way, in the order in which it may happen. The terminal is one
-// listener among others.
+// Events that the pipeline reports, in the order in which they can occur.
 
-// About the input, one line; the work goes on.
+// A problem with the input that does not stop the work, one line.
 struct Warning {
   std::string text;
 };
-// COLMAP has found the poses of plain photographs.
+// COLMAP found the poses of plain photographs.
 struct PosesFound {
   sfm::ColmapReport report;
 };
@@ -35,30 +34,30 @@ struct InspectionProgress {
 // The verdicts of all effects, before trials.
 struct CaptureInspected {
   const Inspection* inspection = nullptr;
-  std::set<std::string> requested;  // effects that the user decides
+  std::set<std::string> requested;  // effects that the user has decided
   double seconds = 0;
 };
-// What will be read and held, before it is.
+// The plan for reading photographs, before they are read.
 struct DataPlanned {
   DataPlan plan;
   int width = 0, height = 0;  // of the largest photograph, downscaled
   int threads = 0;
 };
-// A verdict that changed after the inspection, by a trial or by what all photographs show.
+// A verdict that changed after the inspection, by a trial or after reading all photographs.
 struct VerdictReached {
   Verdict verdict;
 };
 struct EffectsTried {
   double seconds = 0;
 };
-// Effects whose evidence was not conclusive and which were not tried: they stay as configured.
+// Effects that are inconclusive and were not tried; they stay as configured.
 struct EffectsUndecided {
   std::vector<std::string> effects;
 };
 struct BudgetPlanned {
   double seconds = 0;  // the budget
   std::string preset;
-  double steps = 0;  // that there is time for, about
+  double steps = 0;  // approximate number in the budget
 };
 struct PosesRefined {
   PoseRefinementSummary summary;  // shifts in units of the input
@@ -74,7 +73,7 @@ using PipelineEvent = std::variant<Warning, PosesFound, InspectionProgress, Capt
                                    BudgetPlanned, TrainerEvent, PosesRefined, TrainingEnded>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
-// The listener of those who are not interested.
+// A listener that ignores all events.
 inline void IgnoreEvents(const PipelineEvent&) {}
 
 }  // namespace nerf

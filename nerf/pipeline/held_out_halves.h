@@ -8,15 +8,16 @@
 
 namespace nerf {
 
-// Right halves of some photographs to learn from, held out for validation until this goes away: on
-// one photograph a difference of tenths of a decibel is chance. Their left halves are learned from,
-// so that what belongs to a photograph (its pose) is known of all that are measured on.
-// Source: Martin-Brualla et al. 2021, "NeRF in the Wild", section 5.
+// Holds out the right halves of some training photographs for validation during its lifetime. Their
+// left halves are trained on, so that parameters per photograph (its pose) are learned for all
+// validation photographs. Several photographs are needed, because differences of tenths of a
+// decibel on one are not significant. Source: Martin-Brualla et al. 2021, "NeRF in the Wild",
+// section 5.
 class HeldOutHalves {
  public:
-  // Halves of eight photographs, of every four one at most, spread over the capture. Photographs
-  // that hold no pixels in one of their halves are passed over.
-  //   data  meanwhile validates on these alone; as it was afterwards, in the same order
+  // Halves of eight photographs, but at most one in four, spread over the capture. Photographs
+  // without pixels in one of their halves are skipped.
+  //   data  validates on these halves only; restored by the destructor, in the same order
   explicit HeldOutHalves(Dataset& data);
   ~HeldOutHalves();
   HeldOutHalves(const HeldOutHalves&) = delete;
@@ -26,11 +27,11 @@ class HeldOutHalves {
 
  private:
   Dataset& data_;
-  std::vector<std::pair<std::size_t, View>> wholes_;  // photographs by their place
-  std::vector<View> validation_;                      // that was there
+  std::vector<std::pair<std::size_t, View>> wholes_;  // whole photographs, by index
+  std::vector<View> validation_;                      // the original validation views
 };
 
-// The view as a camera would have taken it that shows the columns [left, right) alone.
+// The view cropped to the columns [left, right), with a camera for that part.
 View ColumnsOf(const View& view, int left, int right);
 
 }  // namespace nerf

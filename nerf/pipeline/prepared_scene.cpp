@@ -34,7 +34,7 @@ std::string SomeOf(const std::vector<std::string>& names) {
   return text;
 }
 
-// The folder in which an image's name is its path.
+// The folder to which an image's name is relative.
 fs::path ImageFolder(const PosedImage& image) {
   fs::path folder = image.path;
   for ([[maybe_unused]] const fs::path& part : fs::path(image.name)) folder = folder.parent_path();
@@ -51,7 +51,7 @@ PosedImages FindPoses(const fs::path& input, const fs::path& folder, int threads
     PosesFound found;
     posed = sfm::PosesFromPhotos(location.images, ColmapPath(folder), colmap, &found.report);
     if (!found.report.skipped.empty()) {
-      listener(Warning{fmt::format("{} of {} photographs cannot be read and are left out",
+      listener(Warning{fmt::format("{} of {} photographs cannot be read and are skipped",
                                    found.report.skipped.size(),
                                    found.report.skipped.size() + found.report.photos)});
     }
@@ -94,13 +94,14 @@ void InspectScene(const Config& config, const std::set<std::string>& requested,
                   PreparedScene& scene, const PipelineListener& listener) {
   const Stopwatch watch;
   const auto photographs = static_cast<std::int64_t>(scene.posed.images.size());
-  const bool may_learn = !requested.contains(kBackground.name) || config.effects.background;
+  const bool may_learn_background =
+      !requested.contains(kBackground.name) || config.effects.background;
   scene.inspection = Inspect(
       scene.posed,
       [&](int read) {
         listener(InspectionProgress{read, photographs});
       },
-      may_learn);
+      may_learn_background);
   scene.normalized_from_world = scene.inspection.normalized_from_world;
   scene.inspection_seconds = watch.Seconds();
   listener(InspectionProgress{photographs, photographs});
@@ -120,16 +121,16 @@ void ReportDataPlan(const PosedImages& posed, const DataOptions& options, int th
 
 void ReportMissing(const PosedImages& posed, const PipelineListener& listener) {
   if (posed.missing.empty()) return;
-  listener(Warning{fmt::format("{}: {} of {} images are missing and left out: {}",
+  listener(Warning{fmt::format("{}: {} of {} images are missing and are skipped: {}",
                                posed.source.string(), posed.missing.size(),
                                posed.missing.size() + posed.images.size(), SomeOf(posed.missing))});
 }
 
-void KeepSparsePoints(const PosedImages& posed, const Config& config, const fs::path& run) {
+void SaveSparsePoints(const PosedImages& posed, const Config& config, const fs::path& run) {
   if (!config.effects.depth_supervision) return;
   if (posed.points.empty()) {
     throw InputError(
-        "{}: effects.depth_supervision needs sparse points, and there are none; give a COLMAP "
+        "{}: effects.depth_supervision needs sparse points, and the input has none; use a COLMAP "
         "project or photographs, or turn the effect off",
         posed.source.string());
   }
@@ -137,8 +138,8 @@ void KeepSparsePoints(const PosedImages& posed, const Config& config, const fs::
   sfm::WriteColmapText(posed, SparsePath(run));
 }
 
-void AddKeptPoints(const PosedImages& posed, const SceneNormalization& normalized_from_world,
-                   const fs::path& run, Dataset& data) {
+void AddSavedSparsePoints(const PosedImages& posed, const SceneNormalization& normalized_from_world,
+                          const fs::path& run, Dataset& data) {
   const PosedImages sparse =
       sfm::ReadColmapModel(SparsePath(run), ImageFolder(posed.images.front()));
   AddSparseDepths(sparse, normalized_from_world, data);
@@ -150,15 +151,15 @@ Dataset LoadPhotographs(const PosedImages& posed, const Config& config,
   if (config.effects.masks &&
       std::ranges::all_of(posed.images, [](const auto& image) { return image.mask.empty(); })) {
     throw InputError(
-        "effects.masks: no photograph has a mask; put them into a folder masks beside the "
-        "photographs, IMAGE.png each, or turn the effect off");
+        "effects.masks: no photograph has a mask; put masks named IMAGE.png in a folder masks "
+        "beside the photographs, or turn the effect off");
   }
   Dataset data =
       LoadDataset(posed, config.data, MeaningOf(config.effects.masks), normalized_from_world);
   if (!data.skipped.empty()) {
     for (const std::string& reason : data.skipped) listener(Warning{reason});
     listener(
-        Warning{fmt::format("{} images could not be read and are left out", data.skipped.size())});
+        Warning{fmt::format("{} images could not be read and are skipped", data.skipped.size())});
   }
   if (data.linearized_photographs > 0) {
     listener(Warning{fmt::format(
@@ -166,7 +167,9 @@ Dataset LoadPhotographs(const PosedImages& posed, const Config& config,
         "are converted to linear radiance, and their clipped pixels are ignored",
         data.linearized_photographs)});
   }
-  if (config.effects.depth_supervision) AddKeptPoints(posed, normalized_from_world, run, data);
+  if (config.effects.depth_supervision) {
+    AddSavedSparsePoints(posed, normalized_from_world, run, data);
+  }
   return data;
 }
 

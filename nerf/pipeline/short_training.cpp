@@ -10,9 +10,9 @@
 namespace nerf {
 namespace {
 
-constexpr int kTimed = 10;  // steps at a time
+constexpr int kTimedSteps = 10;  // per measurement
 
-// What a model's training holds: parameters, their gradients, and Adam's two moments.
+// Memory of parameters, their gradients, and Adam's two moments.
 double MegabytesOf(const Model& model) {
   double bytes = 0;
   for (const auto& [name, parameter] : NamedParameters(model)) {
@@ -21,7 +21,7 @@ double MegabytesOf(const Model& model) {
   return bytes * 0x1p-20;
 }
 
-// The same configuration for so many steps and no other end.
+// The configuration limited to a number of steps, without time budget and target.
 Config ForSteps(Config config, int steps) {
   config.train.steps = steps;
   config.train.time_budget = 0;
@@ -37,27 +37,27 @@ ShortTraining TrainShortly(const Config& config, const SceneFacts& scene, const 
   const Stopwatch watch;
   Trainer trainer(ForSteps(config, steps), scene, data, {});
   std::vector<double> seconds;
-  for (int done = 0; done < steps; done += kTimed) {
-    seconds.push_back(trainer.TakeSteps(std::min(kTimed, steps - done)));
+  for (int done = 0; done < steps; done += kTimedSteps) {
+    seconds.push_back(trainer.TakeSteps(std::min(kTimedSteps, steps - done)));
   }
   std::ranges::nth_element(seconds,
                            seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2));
   ShortTraining result;
-  result.seconds_a_step = seconds[seconds.size() / 2];
+  result.seconds_per_step = seconds[seconds.size() / 2];
   result.psnr = trainer.ValidationPsnrAtOwnExposure();
   result.megabytes = MegabytesOf(trainer.GetModel());
   result.seconds = watch.Seconds();
   return result;
 }
 
-double EstimateSecondsOfAStep(const Config& config, const SceneFacts& scene, const Dataset& data,
+double EstimateSecondsPerStep(const Config& config, const SceneFacts& scene, const Dataset& data,
                               int steps) {
   const Stopwatch watch;
   Trainer trainer(ForSteps(config, steps), scene, data, {});
-  const double of_step = trainer.TakeSteps(std::min(kTimed, steps));
-  // Set-up, and the measurement at the end, which takes about as long as these steps did.
-  const double all_else = watch.Seconds();
-  return of_step + all_else / steps;
+  const double per_step = trainer.TakeSteps(std::min(kTimedSteps, steps));
+  // Set-up, and the final validation, which takes about as long as the steps taken here.
+  const double overhead = watch.Seconds();
+  return per_step + overhead / steps;
 }
 
 }  // namespace nerf

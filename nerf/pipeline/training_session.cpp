@@ -28,7 +28,7 @@ TrainingSession::TrainingSession(TrainingRequest request, const Stopwatch& watch
   request_.assignments.insert(request_.assignments.end(), effects.begin(), effects.end());
 }
 
-Config TrainingSession::Configured(const std::string& preset) const {
+Config TrainingSession::ConfigWithDecisions(const std::string& preset) const {
   std::vector<std::string> all = request_.assignments;
   all.insert(all.end(), decisions_.Assignments().begin(), decisions_.Assignments().end());
   return LoadConfig(preset, all);
@@ -38,64 +38,65 @@ void TrainingSession::WriteConfig() const {
   WriteFileAtomically(ConfigPath(request_.run), JsonFromConfig(config_).dump(2) + "\n");
 }
 
-// A folder is a run's own once it holds a run's config.json. Somebody else's transforms.json there,
-// maybe the very input, is not to be written over.
-void TrainingSession::RefuseForeignFolder() const {
+// A folder belongs to a run once it contains config.json. Before that, an existing transforms.json
+// may be the input and must not be overwritten.
+void TrainingSession::CheckRunFolder() const {
   const fs::path& run = request_.run;
   if (fs::exists(CheckpointPath(run))) {
     throw InputError(
-        "{}: holds a run already; add --resume to go on with it, or choose another folder with -o",
+        "{}: already contains a run; use --resume to continue it, or choose another folder with -o",
         run.string());
   }
   for (const fs::path& file : {PosesPath(run), MetricsPath(run)}) {
     if (!fs::exists(file) || fs::exists(ConfigPath(run))) continue;
-    throw InputError("{}: is there already, and not from nerf train; choose another -o",
-                     file.string());
+    throw InputError(
+        "{}: already exists and was not written by nerf train; choose another folder with -o",
+        file.string());
   }
 }
 
-// A target is measured on photographs that training does not see.
+// A target PSNR needs validation photographs.
 void TrainingSession::RequireValidation() const {
   const auto validates = [](const auto& image) { return image.split == Split::kValidation; };
   if (config_.train.target_psnr == 0) return;
   if (std::ranges::any_of(scene_.posed.images, validates)) return;
   throw InputError(
-      "train.target_psnr is measured on validation photographs, and there are none: set "
-      "data.validation_images to 1 or more, and take 16 photographs at least");
+      "train.target_psnr needs validation photographs, and there are none: set "
+      "data.validation_images to 1 or more, and use at least 16 photographs");
 }
 
-// Seconds of the time budget that are gone. Finding poses cannot be bounded: training gets at least
-// half of the budget.
+// Seconds of the time budget that are spent. The time for finding poses cannot be bounded, so
+// training gets at least half of the budget.
 double TrainingSession::SpentSeconds() const {
   const double budget = config_.train.time_budget, spent = watch_.Seconds();
   if (budget == 0 || spent <= budget / 2) return spent;
-  listener_(Warning{fmt::format("{} of the time budget were gone before training; it still gets {}",
-                                FormatSeconds(spent), FormatSeconds(budget / 2))});
+  listener_(Warning{
+      fmt::format("{} of the time budget were spent before training; training still gets {}",
+                  FormatSeconds(spent), FormatSeconds(budget / 2))});
   return budget / 2;
 }
 
 void TrainingSession::PrepareCapture() {
-  config_ = Configured(request_.preset);
-  RefuseForeignFolder();
-  sfm::FindInput(request_.input);  // a wrong input must not leave an empty run behind
+  config_ = ConfigWithDecisions(request_.preset);
+  CheckRunFolder();
+  sfm::FindInput(request_.input);  // fails before a run folder is created
   scene_ = PrepareScene(request_.input, request_.run, config_.data, request_.threads, listener_);
   RequireValidation();
   if (request_.effects.inspect) {
     const auto requested = NamedEffects(request_.preset, request_.assignments);
     InspectScene(config_, requested, scene_, listener_);
     decisions_ = EffectDecisions(scene_.inspection, requested);
-    config_ = Configured(request_.preset);
+    config_ = ConfigWithDecisions(request_.preset);
   }
   MakeOutputFolder(request_.run);
-  KeepSparsePoints(scene_.posed, config_, request_.run);
+  SaveSparsePoints(scene_.posed, config_, request_.run);
   if (request_.effects.inspect) {
     listener_(
         CaptureInspected{&scene_.inspection, decisions_.Requested(), scene_.inspection_seconds});
   }
-  // First, for it marks the folder as a run's own.
-  WriteConfig();
+  WriteConfig();  // first, because it marks the folder as a run folder
   sfm::WriteTransformsJson(scene_.posed, PosesPath(request_.run));
-  // Read back, so that a run which resumes starts from the same numbers to the last bit.
+  // Read back, so that a resumed run has the same poses bit for bit.
   posed_ = sfm::ReadTransformsJson(PosesPath(request_.run));
 }
 
@@ -109,18 +110,19 @@ void TrainingSession::DecideEffects() {
   if (!request_.effects.inspect) return;
   facts_.exposure_stops = scene_.StopsOf(data_.train);
   if (facts_.has_alpha) decisions_.DisableBackgroundForAlpha(listener_);
-  config_ = Configured(request_.preset);
-  const bool tries_depth = decisions_.IsOpen(kDepthSupervision);
+  config_ = ConfigWithDecisions(request_.preset);
+  const bool tries_depth = decisions_.ShouldTry(kDepthSupervision);
   if (tries_depth) AddSparseDepths(scene_.posed, scene_.normalized_from_world, data_);
-  decisions_.Try(config_, facts_, config_.train.time_budget - watch_.Seconds(), data_, listener_);
-  config_ = Configured(request_.preset);
+  decisions_.RunTrials(config_, facts_, config_.train.time_budget - watch_.Seconds(), data_,
+                       listener_);
+  config_ = ConfigWithDecisions(request_.preset);
   WriteConfig();
   WriteFileAtomically(request_.run / "effects.json",
                       decisions_.Report(config_, scene_.inspection_seconds).dump(2) + "\n");
   if (tries_depth && config_.effects.depth_supervision) {
-    // As a run that resumes reads them.
-    KeepSparsePoints(scene_.posed, config_, request_.run);
-    AddKeptPoints(posed_, scene_.normalized_from_world, request_.run, data_);
+    // Read back, as a resumed run reads them.
+    SaveSparsePoints(scene_.posed, config_, request_.run);
+    AddSavedSparsePoints(posed_, scene_.normalized_from_world, request_.run, data_);
   }
 }
 
@@ -131,7 +133,7 @@ void TrainingSession::PlanTimeBudget() {
   const BudgetPlan plan = PlanBudget(*trainer_, config_.train.time_budget - spent);
   listener_(BudgetPlanned{config_.train.time_budget, plan.preset, plan.steps});
   if (plan.preset == request_.preset) return;
-  config_ = Configured(plan.preset);
+  config_ = ConfigWithDecisions(plan.preset);
   WriteConfig();
   trainer_ = std::make_unique<Trainer>(config_, facts_, data_, request_.run, SpentSeconds());
 }
@@ -154,7 +156,7 @@ TrainSummary TrainingSession::Run(const std::atomic<bool>& stop) {
   return Train(stop);
 }
 
-// Where poses were refined: how far, and RUN/refined_transforms.json.
+// With pose refinement: reports its size, and writes RUN/refined_transforms.json.
 void TrainingSession::ReportRefinedPoses() const {
   const Model& model = trainer_->GetModel();
   if (!model.pose_refinement) return;
@@ -176,9 +178,8 @@ std::unique_ptr<TrainingSession> TrainingSession::Resume(TrainingRequest request
   const Model model = ModelFromCheckpoint(checkpoint);
   const int threads = NumThreads();
   if (const int before = checkpoint.meta.value("threads", threads); before != threads) {
-    s.listener_(Warning{
-        fmt::format("the run was on {} threads and goes on with {}; sums will round differently",
-                    before, threads)});
+    s.listener_(Warning{fmt::format(
+        "the run used {} threads and continues with {}; rounding will differ", before, threads)});
   }
   s.config_ = model.config;
   s.scene_.normalized_from_world = model.scene.normalized_from_world;

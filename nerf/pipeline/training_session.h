@@ -17,47 +17,46 @@
 
 namespace nerf {
 
-// What is to be trained.
+// The options of a training session.
 struct TrainingRequest {
   std::filesystem::path input;
-  std::filesystem::path run;  // folder of the results
+  std::filesystem::path run;  // output folder
   std::string preset = "balanced";
-  bool preset_is_given = false;          // else a time budget chooses it
+  bool preset_is_given = false;          // otherwise a time budget chooses the preset
   std::vector<std::string> assignments;  // "block.key=value"
   EffectsRequest effects;
   int threads = 0;  // 0: all cores
 };
 
-// From an input to a trained run: what `nerf train` does, for whoever asks. Reports events in the
-// thread that calls it.
+// The whole of `nerf train`, from an input to a trained run. Reports events in the calling thread.
 class TrainingSession {
  public:
-  //   watch  started with the command: a time budget counts from there
+  //   watch  started with the command: the time budget includes what came before this session
   TrainingSession(TrainingRequest request, const Stopwatch& watch, PipelineListener listener);
-  // A run as it was left; only `run` and `threads` of the request count.
+  // Resumes a run. Only `run` and `threads` of the request are used.
   static std::unique_ptr<TrainingSession> Resume(TrainingRequest request, const Stopwatch& watch,
                                                  PipelineListener listener);
 
-  // The steps in their order, or the rest of them; Run calls all that have not been called.
+  // The stages, in order.
   void PrepareCapture();  // poses, splits, inspection; writes config.json and transforms.json
   void ReadPhotographs();
-  void DecideEffects();  // by trials, where the inspection left something open
+  void DecideEffects();  // runs trials for inconclusive effects
   void PlanTimeBudget();
   TrainSummary Train(const std::atomic<bool>& stop);
 
-  // All of them. Throws InputError, NonFiniteError.
+  // All stages; after Resume or PlanTimeBudget, only Train. Throws InputError, NonFiniteError.
   TrainSummary Run(const std::atomic<bool>& stop);
 
-  // The configuration with what is decided so far.
+  // The configuration with the decisions so far.
   const Config& GetConfig() const { return config_; }
   const PreparedScene& Scene() const { return scene_; }
-  // Once there is a trainer, that is after PlanTimeBudget.
+  // Only after PlanTimeBudget or Resume.
   Trainer& GetTrainer() { return *trainer_; }
 
  private:
-  Config Configured(const std::string& preset) const;
+  Config ConfigWithDecisions(const std::string& preset) const;
   void WriteConfig() const;
-  void RefuseForeignFolder() const;
+  void CheckRunFolder() const;
   void RequireValidation() const;
   double SpentSeconds() const;
   void ReportRefinedPoses() const;
@@ -67,7 +66,7 @@ class TrainingSession {
   PipelineListener listener_;
   Config config_;
   PreparedScene scene_;
-  PosedImages posed_;  // as the run's transforms.json has them
+  PosedImages posed_;  // as read from the run's transforms.json
   EffectDecisions decisions_;
   Dataset data_;
   SceneFacts facts_;

@@ -6,19 +6,19 @@
 
 namespace nerf {
 
-// How long trials of effects may go on: by the clock where a training ends by it, else by their
-// steps, as a part of those of the training with as many samples.
+// Limits the cost of effect trials relative to the training: by time if there is a time budget,
+// otherwise by steps with the same number of samples.
 class TrialAllowance {
  public:
-  //   seconds_left  of the time budget, where there is one, when trials begin
-  //   samples       that a step of a trial takes
+  //   seconds_left  of the time budget, if there is one, when trials begin
+  //   samples       per step of a trial
   TrialAllowance(const TrainOptions& options, double seconds_left, std::int64_t samples);
 
-  // Whether so many steps more fit into a share of the training that follows the trials.
-  //   spent  seconds since trials began
-  bool Has(int more, double seconds_a_step, double share, double spent) const;
+  // Whether `steps` more steps are within a share of the training that follows the trials.
+  //   spent_seconds  since trials began
+  bool Allows(int steps, double seconds_per_step, double share, double spent_seconds) const;
   void Count(int steps) { done_ += steps; }
-  bool IsByTheClock() const;
+  bool UsesClock() const;
 
  private:
   double seconds_left_, steps_;  // of the training

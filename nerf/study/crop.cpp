@@ -6,8 +6,8 @@
 namespace nerf {
 namespace {
 
-// Sum of the differences between neighbours, of every second pixel.
-double Busyness(const Image& image, const Patch& patch) {
+// Sum of the absolute differences between neighbouring pixels, at every second pixel.
+double DetailOf(const Image& image, const Patch& patch) {
   double sum = 0;
   for (int y = patch.top; y + 1 < patch.top + patch.side; y += 2) {
     for (int x = patch.left; x + 1 < patch.left + patch.side; x += 2) {
@@ -22,16 +22,16 @@ double Busyness(const Image& image, const Patch& patch) {
 
 }  // namespace
 
-Patch BusiestPatch(const Image& image) {
+Patch MostDetailedPatch(const Image& image) {
   const int side = std::max(1, std::min(image.width, image.height) / 4);
   const int stride = std::max(1, side / 4);
   Patch best{0, 0, side};
   double most = -1;
   for (int top = 0; top + side <= image.height; top += stride) {
     for (int left = 0; left + side <= image.width; left += stride) {
-      const double busyness = Busyness(image, {left, top, side});
-      if (busyness <= most) continue;
-      most = busyness;
+      const double detail = DetailOf(image, {left, top, side});
+      if (detail <= most) continue;
+      most = detail;
       best = {left, top, side};
     }
   }

@@ -9,11 +9,11 @@ struct Patch {
   int left = 0, top = 0, side = 0;  // pixels
 };
 
-// Where the picture changes most from pixel to pixel: what a bad rendering blurs first. A quarter
-// of the shorter side across.
-Patch BusiestPatch(const Image& image);
+// The patch with the most detail, which a bad rendering blurs first. Its side is a quarter of the
+// image's shorter side.
+Patch MostDetailedPatch(const Image& image);
 
-// The pixels of a patch, which must lie in the image.
+// The pixels of a patch, which must be inside the image.
 Image Crop(const Image& image, const Patch& patch);
 
 }  // namespace nerf

@@ -1,4 +1,4 @@
-# Writes OUTPUT: a C++ file with the texts of TEMPLATE and of the JavaScript library CHART_JS.
+# Writes OUTPUT: a C++ file with the text of TEMPLATE and of the JavaScript library CHART_JS.
 file(READ ${TEMPLATE} page)
 file(READ ${CHART_JS} chart)
 string(REGEX REPLACE "//# sourceMappingURL=[^\n]*" "" chart "${chart}")

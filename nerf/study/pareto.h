@@ -6,15 +6,13 @@
 
 namespace nerf {
 
-// Something that costs and something that it is worth.
 struct CostAndValue {
   double cost = 0;   // less is better
   double value = 0;  // more is better
 };
 
-// The points that no other beats: none costs at most as much and is worth at least as much, unless
-// it is equal to it in both. In order of cost, along which value rises.
-// What is not finite is on no front.
+// The indices of the Pareto-optimal points, those that no other point dominates, by increasing cost
+// and value. Equal points are all included, non-finite ones are not.
 std::vector<std::size_t> ParetoFront(std::span<const CostAndValue> points);
 
 }  // namespace nerf

@@ -18,7 +18,7 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
-// JSON that cannot end the script that it stands in, whatever names are in it.
+// JSON for embedding in a <script>: without "<", so that no name in it can end the script.
 std::string ScriptOf(const nlohmann::json& json) {
   std::string text;
   const auto replace = nlohmann::json::error_handler_t::replace;
@@ -32,9 +32,9 @@ std::string ScriptOf(const nlohmann::json& json) {
   return text;
 }
 
-void Replace(std::string& text, std::string_view mark, std::string_view by) {
-  const auto at = text.find(mark);
-  if (at != std::string::npos) text.replace(at, mark.size(), by);
+void Replace(std::string& text, std::string_view placeholder, std::string_view replacement) {
+  const auto at = text.find(placeholder);
+  if (at != std::string::npos) text.replace(at, placeholder.size(), replacement);
 }
 
 }  // namespace

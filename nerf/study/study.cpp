@@ -28,17 +28,17 @@ using nlohmann::json;
 
 constexpr double kQualities[] = {1, 0.75, 0.5, 0.25, 0};
 
-constexpr double kSlowestFrame = 5;  // seconds, up to which all qualities are measured
+constexpr double kSlowestFrame = 5;  // seconds; above it only quality 1 is measured
 
-// What a setting takes beside its training, until the first has shown it.
-constexpr double kFirstOverhead = 4;  // seconds
+// Seconds of a setting beside its training, assumed until the first one is measured.
+constexpr double kFirstOverhead = 4;
 
-// Of the budget, after which effects are decided by as long a training as a middle setting has.
-constexpr double kMiddlePart = 0.07;
+// Share of the budget of a setting of middle length, for which effects are decided.
+constexpr double kMiddleShare = 0.07;
 
 fs::path JsonPath(const fs::path& folder) { return folder / "study.json"; }
 
-// Of the stages of all lines of metrics.jsonl, and the curve of validation.
+// The total time of each stage, the validation curve and the peak memory from metrics.jsonl.
 json CostsOf(const fs::path& metrics) {
   json stages = json::object(), curve = json::array();
   double peak = 0;
@@ -68,7 +68,7 @@ Study::Study(PreparedScene scene, const StudyOptions& options, fs::path folder,
   const std::vector<const PosedImage*> all = ImagesOf(scene_.posed, Split::kTest);
   const std::string source = scene_.posed.source.string();
   if (all.empty()) {
-    throw InputError("{}: a study is measured on held-out photographs; take 8 at least", source);
+    throw InputError("{}: a study needs held-out photographs; use at least 8 photographs", source);
   }
   const auto count = std::min(all.size(), options_.held_out);
   json names = json::array();
@@ -92,7 +92,7 @@ void Study::ReadEarlierResults() {
       json::parse(ReadWholeFile(JsonPath(folder_)), nullptr, /*allow_exceptions=*/false);
   for (const char* key : {"input", "downscale", "budget_seconds", "held_out"}) {
     if (!before.is_object() || !before.contains(key) || before[key] != results_[key]) {
-      throw InputError("{}: is of another study ({} differs); choose another folder with -o",
+      throw InputError("{}: belongs to another study ({} differs); choose another folder with -o",
                        JsonPath(folder_).string(), key);
     }
   }
@@ -100,7 +100,7 @@ void Study::ReadEarlierResults() {
   decided_ = results_.value("effects", std::vector<std::string>());
 }
 
-// Each resolution is read once.
+// Reads each resolution once.
 Study::Photographs& Study::Read(const Config& config) {
   const auto [found, is_new] = photographs_.try_emplace(config.data.downscale);
   Photographs& photographs = found->second;
@@ -115,17 +115,17 @@ Study::Photographs& Study::Read(const Config& config) {
   return photographs;
 }
 
-// As `nerf train` decides, once for all settings.
+// Decides effects as `nerf train` does, once for all settings.
 void Study::DecideEffects() {
   EffectDecisions decisions(scene_.inspection, {});
   decided_ = decisions.Assignments();
-  const double seconds = std::max(1.0, kMiddlePart * options_.budget);
+  const double seconds = std::max(1.0, kMiddleShare * options_.budget);
   const StudySetting balanced = {"effects", "balanced", {}, 1};
   Photographs& photographs = Read(ConfigOf(balanced, seconds));
   if (photographs.facts.has_alpha) decisions.DisableBackgroundForAlpha(listener_);
   decided_ = decisions.Assignments();
-  decisions.Try(ConfigOf(balanced, seconds), photographs.facts, seconds, photographs.data,
-                listener_);
+  decisions.RunTrials(ConfigOf(balanced, seconds), photographs.facts, seconds, photographs.data,
+                      listener_);
   decided_ = decisions.Assignments();
   results_["effects"] = decided_;
 }
@@ -138,18 +138,18 @@ Config Study::ConfigOf(const StudySetting& setting, double seconds) const {
   return LoadConfig(setting.preset, assignments);
 }
 
-// The key "qualities" of a setting: PSNR, SSIM and seconds a frame at each rendering quality.
-// Writes its crop.
+// The value of the key "qualities" of a setting: PSNR, SSIM and seconds per frame at each rendering
+// quality. Also writes the setting's crop.
 json Study::EvaluateQualities(const ModelSnapshot& model, const std::string& name) const {
   json qualities = json::array();
   for (const double quality : kQualities) {
-    // A field that is hardly trained can take minutes a frame: one quality shows that.
+    // A barely trained field can take minutes per frame.
     if (quality < 1 && qualities[0]["seconds_per_frame"] > kSlowestFrame) break;
     const Evaluation evaluation =
         Evaluate(model, scene_.posed, held_out_, {quality, false, options_.downscale},
                  [&](const EvaluatedView& view) {
                    if (quality != 1 || view.image != held_out_.front()) return;
-                   const Patch patch = BusiestPatch(*view.truth);
+                   const Patch patch = MostDetailedPatch(*view.truth);
                    MakeOutputFolder(folder_ / "crops");
                    WriteImage(folder_ / "crops" / (name + ".png"), Crop(*view.rendering, patch));
                    WriteImage(folder_ / "crops" / "truth.png", Crop(*view.truth, patch));
@@ -171,7 +171,7 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
   MakeOutputFolder(run);
   WriteFileAtomically(ConfigPath(run), JsonFromConfig(config).dump(2) + "\n");
   sfm::WriteTransformsJson(scene_.posed, PosesPath(run));
-  KeepSparsePoints(scene_.posed, config, run);
+  SaveSparsePoints(scene_.posed, config, run);
   const Photographs& photographs = Read(config);
   const Stopwatch watch;
   Trainer trainer(config, photographs.facts, photographs.data, run);
@@ -190,7 +190,7 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
   return result;
 }
 
-// "on_training_front" of each setting, and "on_rendering_front" of each of its rendering qualities.
+// Sets "on_training_front" of each setting, and "on_rendering_front" of each of its qualities.
 void Study::MarkFronts() {
   std::vector<CostAndValue> trainings, renderings;
   std::vector<json*> qualities;
@@ -210,13 +210,13 @@ void Study::MarkFronts() {
 }
 
 void Study::Save() const {
-  // Names of files need not be UTF-8.
+  // File names may not be valid UTF-8.
   WriteFileAtomically(JsonPath(folder_),
                       results_.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 bool Study::Run(const std::atomic<bool>& stop,
-                const std::function<void(std::size_t, const StudySetting&, double)>& begins) {
+                const std::function<void(std::size_t, const StudySetting&, double)>& on_begin) {
   const double spent_before = results_["spent_seconds"];
   const Stopwatch watch;
   if (decided_.empty()) DecideEffects();
@@ -224,11 +224,11 @@ bool Study::Run(const std::atomic<bool>& stop,
   for (std::size_t next = results_["settings"].size(); next < settings_.size(); ++next) {
     const double left = options_.budget - spent_before - watch.Seconds();
     const double seconds = SecondsOfSetting(settings_, next, left, overhead);
-    begins(next, settings_[next], seconds);
-    const Stopwatch of_setting;
+    on_begin(next, settings_[next], seconds);
+    const Stopwatch setting_watch;
     const json result = Measure(settings_[next], seconds, stop);
     if (result.is_null()) return false;
-    overhead = std::max(0.0, of_setting.Seconds() - seconds);
+    overhead = std::max(0.0, setting_watch.Seconds() - seconds);
     results_["settings"].push_back(result);
     results_["spent_seconds"] = spent_before + watch.Seconds();
     MarkFronts();

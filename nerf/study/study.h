@@ -16,38 +16,38 @@
 namespace nerf {
 
 struct StudyOptions {
-  double budget = 600;  // seconds, of all settings
+  double budget = 600;  // seconds, for all settings
   int downscale = 1;
-  std::size_t held_out = 3;  // photographs that every setting is measured on, at most
+  std::size_t held_out = 3;  // largest number of photographs to evaluate each setting on
 };
 
-// Trains every setting for its share of the budget, with the effects that the capture calls for, as
-// `nerf train` does, and evaluates it on held-out photographs at several rendering qualities.
-// Writes study.json after each setting, and goes on where an earlier call with the same options
-// stopped.
+// A study: trains a grid of settings, each for its share of the budget and with the effects that
+// `nerf train` would choose, and evaluates them on held-out photographs at several rendering
+// qualities. Writes study.json after each setting, and continues an earlier study with the same
+// options.
 class Study {
  public:
-  //   scene     prepared with the splits of the preset balanced, and inspected
-  //   folder    study.json, runs/SETTING and crops/SETTING.png go there
-  //   listener  of what training each setting reports
-  // Throws InputError where the capture holds no photograph out, or the folder another study.
+  //   scene     prepared with the splits of the preset `balanced`, and inspected
+  //   folder    of study.json, runs/SETTING and crops/SETTING.png
+  //   listener  receives the events of each training
+  // Throws InputError if no photograph is held out, or the folder contains another study.
   Study(PreparedScene scene, const StudyOptions& options, std::filesystem::path folder,
         PipelineListener listener);
 
-  // Until the last setting is done or `stop` is set. Returns whether all are done.
-  //   begins  called before each setting with its number, its name and its seconds of training
+  // Runs until all settings are done or `stop` is set. Returns whether all are done.
+  //   on_begin  called before each setting with its number, the setting and its training seconds
   bool Run(const std::atomic<bool>& stop,
-           const std::function<void(std::size_t, const StudySetting&, double)>& begins);
+           const std::function<void(std::size_t, const StudySetting&, double)>& on_begin);
 
   std::size_t Settings() const { return settings_.size(); }
-  // As in study.json; see Measure in study.cpp for its keys.
+  // The content of study.json; its keys are in Measure in study.cpp.
   const nlohmann::json& Results() const { return results_; }
 
  private:
   struct Photographs {
     Dataset data;
     SceneFacts facts;
-    double seconds = 0;  // that reading took
+    double seconds = 0;  // reading time
   };
   void ReadEarlierResults();
   void DecideEffects();
@@ -64,9 +64,9 @@ class Study {
   std::filesystem::path folder_;
   PipelineListener listener_;
   std::vector<StudySetting> settings_;
-  std::vector<const PosedImage*> held_out_;  // of scene_
+  std::vector<const PosedImage*> held_out_;  // points into scene_
   std::map<int, Photographs> photographs_;   // by downscale
-  std::vector<std::string> decided_;         // of effects, "effects.NAME=..."
+  std::vector<std::string> decided_;         // assignments of effects, "effects.NAME=..."
   nlohmann::json results_;
 };
 

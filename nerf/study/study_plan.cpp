@@ -7,10 +7,9 @@
 namespace nerf {
 namespace {
 
-// Parts of the shortest time.
+// Training times, relative to the shortest.
 constexpr double kShort = 1, kMiddle = 3, kLong = 9;
 
-// Less teaches nothing about anything.
 constexpr double kShortestTraining = 1;  // seconds
 
 }  // namespace

@@ -7,20 +7,21 @@ namespace nerf {
 
 // One training of a study.
 struct StudySetting {
-  std::string name;  // of its run folder, too
+  std::string name;  // also of its run folder
   std::string preset;
   std::vector<std::string> assignments;  // "block.key=value"
-  double share = 1;                      // of the study's training time, in parts of the shortest
+  double share = 1;                      // training time, relative to the shortest
 };
 
-// What a study tries: the presets for a short, a middle and a long time, and at the middle one
-// `balanced` with one thing changed at a time: levels and size of the hash table, width of the
-// networks, samples a ray, precision, resolution of the photographs. In rising order of time.
-//   downscale  of the photographs, where no setting says otherwise
+// The settings of a study: the presets for a short, a middle and a long time, and variants of
+// `balanced` for the middle time that change one thing: levels or size of the hash table, width of
+// the networks, samples per ray, precision, resolution of the photographs. By increasing time.
+//   downscale  of the photographs, unless a setting changes it
 std::vector<StudySetting> StudySettings(int downscale);
 
-// Seconds of training for setting `next`, when `left` seconds are left of the study for it and
-// those after it, and a setting takes `overhead` seconds beside its training.
+// The training time of setting `next`, seconds.
+//   left      seconds left for it and all later settings
+//   overhead  seconds that each setting takes beside its training
 double SecondsOfSetting(const std::vector<StudySetting>& settings, std::size_t next, double left,
                         double overhead);
 

@@ -8,16 +8,16 @@
 
 namespace nerf {
 
-// metrics.jsonl of a run: a JSON object a line, a line each validation.
+// metrics.jsonl of a run: one line, a JSON object, per validation.
 class MetricsFile {
  public:
-  // Keeps the lines up to and with `last_step`: what a run wrote after the checkpoint that it
-  // resumes from will be written again.
+  // Keeps existing lines up to and including `last_step`. Lines after the checkpoint from which a
+  // run resumes are discarded, as they will be written again.
   MetricsFile(const std::filesystem::path& path, std::int64_t last_step);
 
   void Append(const nlohmann::json& line);
 
-  // Of "validation_psnr" against "seconds", of all lines so far.
+  // "validation_psnr" over "seconds" of all lines.
   const QualityCurve& Curve() const { return curve_; }
 
  private:

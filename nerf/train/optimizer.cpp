@@ -11,9 +11,9 @@
 namespace nerf {
 namespace {
 
-constexpr std::int64_t kFloatsWorthAThread = 1 << 14;
+constexpr std::int64_t kMinFloatsPerThread = 1 << 14;
 
-// What LibTorch's interface asks of an optimiser's options.
+// The options that LibTorch's optimizer interface requires.
 struct LearningRate : torch::optim::OptimizerCloneableOptions<LearningRate> {
   explicit LearningRate(double rate) : value(rate) {}
   double get_lr() const override { return value; }
@@ -67,7 +67,7 @@ bool Adam::StepDense(const Slot& slot, const torch::Tensor& gradient) {
              m = Span<float>(slot.first_moment), v = Span<float>(slot.second_moment);
   std::atomic<bool> finite = true;
   ParallelFor(
-      slot.parameter.numel(), kFloatsWorthAThread, [&](std::int64_t first, std::int64_t last) {
+      slot.parameter.numel(), kMinFloatsPerThread, [&](std::int64_t first, std::int64_t last) {
         const std::size_t count = last - first;
         if (!kernels::AdamStep(adam, correction, p.subspan(first, count), g.subspan(first, count),
                                m.subspan(first, count), v.subspan(first, count))) {
@@ -84,7 +84,7 @@ bool Adam::StepSparse(const Slot& slot, const torch::Tensor& gradient) {
   const auto n = Span<std::int32_t>(slot.entry_steps);
   std::atomic<bool> finite = true;
   ParallelFor(
-      slot.parameter.size(0), kFloatsWorthAThread / features,
+      slot.parameter.size(0), kMinFloatsPerThread / features,
       [&](std::int64_t first, std::int64_t last) {
         const std::size_t at = first * features, size = (last - first) * features;
         if (!kernels::SparseAdamStep(coefficients_, static_cast<int>(features), corrections_,
@@ -118,7 +118,7 @@ torch::Tensor Adam::step(LossClosure closure) {
   return loss;
 }
 
-// The tensors themselves, by the names they have in a checkpoint.
+// The state tensors (not copies), by their names in a checkpoint.
 std::map<std::string, torch::Tensor> Adam::State() const {
   std::map<std::string, torch::Tensor> state = {{"adam.steps", steps_}};
   for (const Slot& slot : slots_) {

@@ -8,8 +8,8 @@ namespace nerf {
 namespace {
 
 constexpr std::size_t kFewestPoints = 4;
-constexpr double kWindow = 0.25;  // the fit begins at this part of the time
-constexpr double kSlopeAhead = 0.7;
+constexpr double kWindow = 0.25;               // the fit begins at this fraction of the time
+constexpr double kPredictedSlopeFactor = 0.7;  // the curve flattens
 
 }  // namespace
 
@@ -30,7 +30,7 @@ std::optional<double> QualityCurve::SecondsOfLast(double gain) const {
   const double before = best->psnr - gain;
   const auto after = std::find_if(points_.begin(), best,
                                   [before](const Point& point) { return point.psnr >= before; });
-  if (after == points_.begin()) return {};  // never was as bad
+  if (after == points_.begin()) return {};  // has not improved by that much
   const Point& from = *(after - 1);
   const double part = (before - from.psnr) / (after->psnr - from.psnr);
   return best->seconds - (from.seconds + part * (after->seconds - from.seconds));
@@ -62,7 +62,7 @@ std::optional<QualityCurve::Line> QualityCurve::Fit() const {
 std::optional<double> QualityCurve::SecondsForNext(double gain) const {
   const auto line = Fit();
   if (!line) return {};
-  const double slope = kSlopeAhead * line->slope;
+  const double slope = kPredictedSlopeFactor * line->slope;
   if (!(slope > 0)) return std::numeric_limits<double>::infinity();
   return points_.back().seconds * std::expm1(gain / slope);
 }
@@ -70,8 +70,8 @@ std::optional<double> QualityCurve::SecondsForNext(double gain) const {
 std::optional<double> QualityCurve::PsnrAt(double seconds) const {
   const auto line = Fit();
   if (!line) return {};
-  return line->level +
-         kSlopeAhead * std::max(0.0, line->slope) * std::log(seconds / points_.back().seconds);
+  return line->level + kPredictedSlopeFactor * std::max(0.0, line->slope) *
+                           std::log(seconds / points_.back().seconds);
 }
 
 }  // namespace nerf

@@ -9,16 +9,16 @@
 namespace nerf {
 
 Trainer::Trainer(const Config& config, const SceneFacts& scene, const Dataset& data,
-                 const std::filesystem::path& run, double spent)
-    : state_(std::make_unique<State>(MakeModel(config, scene), data, run, spent)) {
+                 const std::filesystem::path& run, double spent_seconds)
+    : state_(std::make_unique<State>(MakeModel(config, scene), data, run, spent_seconds)) {
   KeepVisibleCells(*state_->model.grid, data.train);
-  if (state_->model.background) state_->StartBackground();
+  if (state_->model.background) state_->InitializeBackground();
 }
 
 Trainer::Trainer(const Checkpoint& checkpoint, const Dataset& data,
-                 const std::filesystem::path& run, double spent)
+                 const std::filesystem::path& run, double spent_seconds)
     : state_(std::make_unique<State>(ModelFromCheckpoint(checkpoint), data, run,
-                                     spent + checkpoint.meta.value("spent_seconds", 0.0))) {
+                                     spent_seconds + checkpoint.meta.value("spent_seconds", 0.0))) {
   state_->Load(checkpoint);
 }
 
@@ -35,7 +35,7 @@ double Trainer::ValidationPsnrAtOwnExposure() const {
 double Trainer::TakeSteps(int steps) {
   const Stopwatch watch;
   int taken = 0;
-  for (; taken < steps && !state_->Over(); ++taken) state_->Step();
+  for (; taken < steps && !state_->Finished(); ++taken) state_->Step();
   return taken > 0 ? watch.Seconds() / taken : 0;
 }
 
@@ -47,38 +47,39 @@ TrainSummary Trainer::Run(const std::atomic<bool>& stop, const TrainerListener& 
   };
   MetricsFile metrics(MetricsPath(s.run), s.step);
 
-  // Read once a step, for the clock goes on.
-  bool over = s.Over();
-  while (!over && !stop) {
+  // Evaluated once per step, because it depends on the clock.
+  bool finished = s.Finished();
+  while (!finished && !stop) {
     const double before = s.training_seconds;
     const auto rays = static_cast<double>(s.rays_per_batch);
     const StepResult result = s.Step();
-    over = s.Over();
-    if (s.snapshots.IsWanted()) s.snapshots.Publish(ModelSnapshot::Copy(s.model, s.step));
+    finished = s.Finished();
+    if (s.snapshots.IsRequested()) s.snapshots.Publish(ModelSnapshot::Copy(s.model, s.step));
 
     LapTimer timer;
-    const bool validates = over || s.step % options.validate_every == 0;
+    const bool validates = finished || s.step % options.validate_every == 0;
     if (validates) {
       if (!s.validation.Empty()) {
         s.validation_psnr = s.validation.Psnr(s.model, s.model.exposure != nullptr);
         report(Validated{s.step, s.training_seconds, s.validation_psnr});
       }
       metrics.Append(s.Metrics());
-      s.tally = {};
-      over = over || s.ReachedTarget();
+      s.statistics = {};
+      finished = finished || s.ReachedTarget();
     }
-    if (over || s.step % options.checkpoint_every == 0) {
+    if (finished || s.step % options.checkpoint_every == 0) {
       s.Save();
       double seconds = 0;
       timer.Lap(seconds);
-      if (validates) s.pace.SetSecondsOfTheEnd(seconds);
+      if (validates) s.progress.ReserveSeconds(seconds);
       report(CheckpointWritten{s.step});
     }
-    report(StepTaken{s.step, s.pace.Spent(), result.loss, rays / (s.training_seconds - before),
-                     &metrics.Curve()});
+    report(StepTaken{s.step, s.progress.SpentSeconds(), result.loss,
+                     rays / (s.training_seconds - before), &metrics.Curve()});
   }
-  if (!over) s.Save();
-  return {over, s.step, s.training_seconds, s.validation_psnr, s.ReachedTarget(), metrics.Curve()};
+  if (!finished) s.Save();
+  return {finished,          s.step,         s.training_seconds, s.validation_psnr,
+          s.ReachedTarget(), metrics.Curve()};
 }
 
 }  // namespace nerf

@@ -13,13 +13,13 @@
 
 namespace nerf {
 
-// What a training reports while it runs, in the thread that trains.
+// Events of a running training, reported in the training thread.
 struct StepTaken {
   std::int64_t step = 0;                // steps so far
   double spent_seconds = 0;             // of the whole command
   double loss = 0;                      // of this step
   double rays_per_second = 0;           // of this step
-  const QualityCurve* curve = nullptr;  // of the validations so far
+  const QualityCurve* curve = nullptr;  // of all validations
 };
 struct Validated {
   std::int64_t step = 0;
@@ -33,30 +33,30 @@ using TrainerEvent = std::variant<StepTaken, Validated, CheckpointWritten>;
 using TrainerListener = std::function<void(const TrainerEvent&)>;
 
 struct TrainSummary {
-  bool finished = false;  // false: stopped on request, saved, to be resumed
+  bool finished = false;  // false: stopped on request, can be resumed
   std::int64_t step = 0;
   double training_seconds = 0;  // without validation and saving
-  double validation_psnr = 0;   // dB, on a fixed sample of validation pixels; 0: none held out
+  double validation_psnr = 0;   // dB, on a fixed sample of validation pixels; 0: no validation
   bool reached_target = false;
   QualityCurve curve;
 };
 
-// Trains a model: draws pixels, lets the engine compute gradients, steps the optimiser, keeps the
-// occupancy grid fresh, validates, writes metrics.jsonl and checkpoints into the run folder.
+// Trains a model: samples pixels, computes gradients with an engine, steps the optimizer, updates
+// the occupancy grid, validates, and writes metrics.jsonl and checkpoints to the run folder.
 class Trainer {
  public:
   // A new run. `data` must outlive the trainer.
-  //   spent  seconds of train.time_budget that are gone already
+  //   spent_seconds  already spent of train.time_budget
   Trainer(const Config& config, const SceneFacts& scene, const Dataset& data,
-          const std::filesystem::path& run, double spent = 0);
-  // A run as its checkpoint left it: goes on as if it had never stopped, bit for bit with the same
-  // number of threads.
+          const std::filesystem::path& run, double spent_seconds = 0);
+  // Resumes a run from its checkpoint. With the same number of threads, the result is bit for bit
+  // that of an uninterrupted run.
   Trainer(const Checkpoint& checkpoint, const Dataset& data, const std::filesystem::path& run,
-          double spent = 0);
+          double spent_seconds = 0);
   ~Trainer();
 
-  // Takes the run's next steps, as many as there are up to `steps`, without a line of metrics.
-  // Returns the mean seconds of those that were taken; 0 where none was.
+  // Takes up to `steps` of the run's remaining steps, without writing metrics. Returns the mean
+  // seconds per step; 0 if no steps remain.
   double TakeSteps(int steps);
 
   // Trains until config.train.steps, the end of the time budget, the target PSNR, or until `stop`
@@ -64,14 +64,14 @@ class Trainer {
   // good checkpoint stays.
   TrainSummary Run(const std::atomic<bool>& stop, const TrainerListener& listener = {});
 
-  // dB, on a fixed sample of validation pixels, of which there must be some, each photograph at its
-  // own exposure, fitted, whether the model simulates exposures or not.
+  // PSNR, dB, on a fixed sample of validation pixels, each photograph at its own fitted exposure,
+  // whether the model simulates exposures or not. Needs validation photographs.
   double ValidationPsnrAtOwnExposure() const;
 
-  // For those who look at the model while it trains, from any thread.
+  // Snapshots of the model during training, for any thread.
   SnapshotSlot& Snapshots();
 
-  // The model between two steps, for the thread that trains.
+  // The current model; only for the training thread.
   const Model& GetModel() const;
 
  private:

@@ -18,19 +18,19 @@
 namespace nerf {
 namespace {
 
-// What checkpoints call the state of the error map.
+// Name of the error map in checkpoints.
 constexpr char kErrorsName[] = "sampler.errors";
 
-double PartOf(std::int64_t step, int steps) {
+double Ramp(std::int64_t step, int steps) {
   return steps > 0 ? std::clamp(static_cast<double>(step) / steps, 0.0, 1.0) : 1.0;
 }
 
 Annealing AnnealingAt(const Model& model, std::int64_t step) {
   Annealing annealing;
   if (model.proposal) {
-    annealing.proposal = PartOf(step, model.config.proposal.anneal_steps);
+    annealing.proposal = Ramp(step, model.config.proposal.anneal_steps);
   } else {
-    annealing.detail = PartOf(step, model.config.occupancy.coarse_to_fine_steps);
+    annealing.detail = Ramp(step, model.config.occupancy.coarse_to_fine_steps);
   }
   return annealing;
 }
@@ -38,7 +38,7 @@ Annealing AnnealingAt(const Model& model, std::int64_t step) {
 }  // namespace
 
 Trainer::State::State(Model model_in, const Dataset& data_in, std::filesystem::path run_in,
-                      double spent)
+                      double spent_seconds)
     : model(std::move(model_in)),
       engine(MakeEngine(model)),
       data(data_in),
@@ -48,7 +48,7 @@ Trainer::State::State(Model model_in, const Dataset& data_in, std::filesystem::p
                                                      : 0.0),
       optimizer(NamedParameters(model), model.config.optimizer),
       validation(data.validation, Options().seed),
-      pace(Options(), spent),
+      progress(Options(), spent_seconds),
       rays_per_batch(std::clamp<std::int64_t>(Options().samples_per_batch / 128, 1,
                                               Options().max_rays_per_batch)) {
   TORCH_CHECK(Options().target_psnr == 0 || !validation.Empty(),
@@ -60,18 +60,18 @@ void Trainer::State::CheckPhotographs() const {
   const std::vector<std::string>& names = model.scene.photographs;
   if (std::ranges::equal(names, data.train, {}, {}, &View::name)) return;
   throw InputError(
-      "{}: was trained on {} photographs, and now there are {}, or others; put back what it was "
-      "trained on, or train again",
+      "{}: was trained on {} photographs, but the input has {} or other ones; restore the original "
+      "photographs or train again",
       run.string(), names.size(), data.train.size());
 }
 
-void Trainer::State::StartBackground() {
-  constexpr std::int64_t kRaysOfATexel = 32, kMostRays = 1 << 20;  // about 100 MB
+void Trainer::State::InitializeBackground() {
+  constexpr std::int64_t kRaysPerTexel = 32, kMaxRays = 1 << 20;  // about 100 MB
   const std::int64_t rows = model.config.effects.background->resolution;
-  const std::int64_t rays = std::min(2 * rows * rows * kRaysOfATexel, kMostRays);
+  const std::int64_t rays = std::min(2 * rows * rows * kRaysPerTexel, kMaxRays);
   TargetBatch batch = PixelSampler(data.train).Sample(rays, Options().seed, 0);
   if (model.exposure) {
-    // As the field shows it, so that photographs whose exposures are known agree.
+    // Colours at the mean exposure, so that photographs with known exposures agree.
     const torch::NoGradGuard no_grad;
     const torch::Tensor gains = model.exposure->Gains().to(torch::kFloat).contiguous();
     const auto gain = Span<const float>(gains);
@@ -86,12 +86,12 @@ StepResult Trainer::State::Step() {
   StepSeconds seconds;
   LapTimer timer;
   const std::int64_t rays = rays_per_batch;
-  const StepResult result = Learn(seconds);
+  const StepResult result = UpdateParameters(seconds);
   AdaptBatch(result.shaded);
   ++step;
   timer.Lap(seconds.all);
   training_seconds += seconds.all;
-  tally.Add(result, rays, seconds);
+  statistics.Add(result, rays, seconds);
   return result;
 }
 
@@ -99,24 +99,24 @@ StepContext Trainer::State::Context() const {
   StepContext context;
   context.step = step;
   context.seed = Options().seed;
-  context.progress = pace.Progress(step);
+  context.progress = progress.Fraction(step);
   context.learning_rate_factor = LearningRateFactor(model.config.schedule, step, context.progress);
   context.annealing = AnnealingAt(model, step);
   return context;
 }
 
-StepResult Trainer::State::Learn(StepSeconds& seconds) {
+StepResult Trainer::State::UpdateParameters(StepSeconds& seconds) {
   const StepContext context = Context();
   model.annealing = context.annealing;
   try {
     LapTimer timer;
-    double of_engine = 0;
+    double engine_seconds = 0;  // in result.seconds
     if (step % model.config.occupancy.update_every == 0) engine->UpdateOccupancy(context);
     timer.Lap(seconds.occupancy);
     const TargetBatch batch = sampler.Sample(rays_per_batch, context.seed, step);
     timer.Lap(seconds.pixels);
     const StepResult result = engine->AccumulateGradients(batch, context);
-    timer.Lap(of_engine);
+    timer.Lap(engine_seconds);
     if (ErrorMap* errors = sampler.Errors()) errors->Update(batch.cell, result.ray_error);
     timer.Lap(seconds.pixels);
     optimizer.Step(context.learning_rate_factor);
@@ -131,8 +131,8 @@ StepResult Trainer::State::Learn(StepSeconds& seconds) {
 void Trainer::State::AdaptBatch(std::int64_t shaded) {
   const double ratio = static_cast<double>(Options().samples_per_batch) /
                        static_cast<double>(std::max<std::int64_t>(1, shaded));
-  const double wanted = static_cast<double>(rays_per_batch) * std::clamp(ratio, 0.5, 2.0);
-  rays_per_batch = std::clamp<std::int64_t>(std::llround(wanted), 1, Options().max_rays_per_batch);
+  const double target = static_cast<double>(rays_per_batch) * std::clamp(ratio, 0.5, 2.0);
+  rays_per_batch = std::clamp<std::int64_t>(std::llround(target), 1, Options().max_rays_per_batch);
 }
 
 bool Trainer::State::ReachedTarget() const {
@@ -140,13 +140,13 @@ bool Trainer::State::ReachedTarget() const {
 }
 
 nlohmann::json Trainer::State::Metrics() const {
-  nlohmann::json line = tally.Metrics();
+  nlohmann::json line = statistics.Metrics();
   line["step"] = step;
   line["seconds"] = training_seconds;
-  line["spent_seconds"] = pace.Spent();
+  line["spent_seconds"] = progress.SpentSeconds();
   line["occupied"] = model.grid->OccupiedFraction();
   line["learning_rate"] = model.config.optimizer.learning_rate *
-                          LearningRateFactor(model.config.schedule, step, pace.Progress(step));
+                          LearningRateFactor(model.config.schedule, step, progress.Fraction(step));
   if (!validation.Empty()) line["validation_psnr"] = validation_psnr;
   return line;
 }
@@ -163,7 +163,7 @@ void Trainer::State::Save() const {
   checkpoint.meta["step"] = step;
   checkpoint.meta["rays_per_batch"] = rays_per_batch;
   checkpoint.meta["training_seconds"] = training_seconds;
-  checkpoint.meta["spent_seconds"] = pace.Spent();
+  checkpoint.meta["spent_seconds"] = progress.SpentSeconds();
   checkpoint.meta["threads"] = NumThreads();
   checkpoint.meta["validation_psnr"] = validation_psnr;
   WriteCheckpoint(CheckpointPath(run), checkpoint);
@@ -183,7 +183,7 @@ void Trainer::State::Load(const Checkpoint& checkpoint) {
     training_seconds = checkpoint.meta.at("training_seconds");
     validation_psnr = checkpoint.meta.at("validation_psnr");
     if (step < 0 || rays_per_batch < 1 || rays_per_batch > Options().max_rays_per_batch) {
-      throw InputError("{}: step or rays_per_batch are out of range; train again",
+      throw InputError("{}: step or rays_per_batch is out of range; train again",
                        CheckpointPath(run).string());
     }
   } catch (const nlohmann::json::exception& error) {

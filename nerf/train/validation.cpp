@@ -10,30 +10,32 @@
 #include "nerf/field/tensor_span.h"
 #include "nerf/model/model.h"
 #include "nerf/render/view_renderer.h"
-#include "nerf/train/tally.h"
+#include "nerf/train/step_statistics.h"
 
 namespace nerf {
 namespace {
 
 constexpr std::int64_t kRays = 8192;
 
-void FitToPhotographs(RenderOutput& out, const TargetBatch& truth, ColorEncoding encoding) {
+// Multiplies each photograph's rays by the gains that fit it.
+void FitExposures(RenderOutput& out, const TargetBatch& truth, ColorEncoding encoding) {
   std::map<std::int64_t, std::vector<std::size_t>> rays_of;
   for (std::size_t r = 0; r < truth.photograph.size(); ++r) {
     rays_of[truth.photograph[r]].push_back(r);
   }
-  const std::vector<float> all_through = BackgroundContribution(out.opacity, truth.rays.background);
+  const std::vector<float> all_background =
+      BackgroundContribution(out.opacity, truth.rays.background);
   for (const auto& [photograph, rays] : rays_of) {
-    std::vector<float> rendered, shown, through;
-    const auto take = [](std::size_t r, const std::vector<float>& from, std::vector<float>& to) {
+    std::vector<float> rendered, shown, background;
+    const auto append = [](std::size_t r, const std::vector<float>& from, std::vector<float>& to) {
       to.insert(to.end(), &from[3 * r], &from[3 * r] + 3);
     };
     for (const std::size_t r : rays) {
-      take(r, out.rgb, rendered);
-      take(r, truth.rgb, shown);
-      take(r, all_through, through);
+      append(r, out.rgb, rendered);
+      append(r, truth.rgb, shown);
+      append(r, all_background, background);
     }
-    ApplyGains(FitGains(rendered, shown, through, encoding), through, rendered);
+    ApplyGains(FitGains(rendered, shown, background, encoding), background, rendered);
     for (std::size_t k = 0; k < rays.size(); ++k) {
       std::copy_n(&rendered[3 * k], 3, &out.rgb[3 * rays[k]]);
     }
@@ -55,27 +57,28 @@ Validation::Validation(const std::vector<View>& views, std::uint64_t seed) {
   }
 }
 
-// As the model has refined lenses, and poses where it knows the photograph.
+// The rays with refined focal lengths, and with refined poses where a part of the photograph was
+// trained on.
 RayBatch Validation::Rays(const Model& model) const {
   if (!model.pose_refinement) return batch_.rays;
   const torch::NoGradGuard no_grad;
   const std::int64_t count = batch_.rays.Size();
   const torch::Tensor of_lens = model.pose_refinement->LogFocals();
   const std::vector<std::string>& trained = model.scene.photographs;
-  // Of each photograph, among those trained on; nullopt where it is none of them.
-  std::vector<std::optional<std::int64_t>> place_of;
+  // Of each view, its index among the training photographs; nullopt if it is not one.
+  std::vector<std::optional<std::int64_t>> index_of;
   for (const std::string& name : names_) {
     const auto found = std::ranges::find(trained, name);
-    place_of.emplace_back(found == trained.end() ? std::nullopt
+    index_of.emplace_back(found == trained.end() ? std::nullopt
                                                  : std::optional(found - trained.begin()));
   }
-  std::vector<float> log_f, known;
-  std::vector<std::int64_t> place;
+  std::vector<float> log_f, trained_on;
+  std::vector<std::int64_t> index;
   for (std::int64_t r = 0; r < count; ++r) {
     log_f.push_back(lens_[r] < of_lens.size(0) ? of_lens[lens_[r]].item<float>() : 0.0f);
-    const std::optional<std::int64_t> of_photograph = place_of[batch_.photograph[r]];
-    known.push_back(of_photograph ? 1.0f : 0.0f);
-    place.push_back(of_photograph.value_or(0));
+    const std::optional<std::int64_t> of_photograph = index_of[batch_.photograph[r]];
+    trained_on.push_back(of_photograph ? 1.0f : 0.0f);
+    index.push_back(of_photograph.value_or(0));
   }
   const auto rows = [&](const std::vector<float>& values, std::int64_t columns) {
     return TensorOf(values, {count, columns}, torch::kFloat);
@@ -83,23 +86,23 @@ RayBatch Validation::Rays(const Model& model) const {
   const torch::Tensor origin = rows(batch_.rays.origin, 3);
   const torch::Tensor direction = rows(batch_.rays.direction, 3);
   const RefinedRays refined =
-      model.pose_refinement->forward(origin, direction, TensorOf(place, {count}, torch::kLong));
-  const torch::Tensor zoomed =
+      model.pose_refinement->forward(origin, direction, TensorOf(index, {count}, torch::kLong));
+  const torch::Tensor scaled =
       PoseRefinement::ScaleFocalLength(direction, rows(axis_, 3), rows(log_f, 1));
-  const torch::Tensor is_known = rows(known, 1) > 0.5;
-  return WithRefinedRays(batch_.rays, {torch::where(is_known, refined.origin, origin),
-                                       torch::where(is_known, refined.direction, zoomed)});
+  const torch::Tensor has_pose = rows(trained_on, 1) > 0.5;
+  return WithRefinedRays(batch_.rays, {torch::where(has_pose, refined.origin, origin),
+                                       torch::where(has_pose, refined.direction, scaled)});
 }
 
 double Validation::Psnr(const Model& model, bool fit_exposure) const {
   RenderOutput out = MakeRenderer(model)->Render(Rays(model));
-  if (fit_exposure) FitToPhotographs(out, batch_, model.scene.encoding);
+  if (fit_exposure) FitExposures(out, batch_, model.scene.encoding);
   double sum = 0;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {
     const double error = std::clamp(out.rgb[i], 0.0f, 1.0f) - std::clamp(batch_.rgb[i], 0.0f, 1.0f);
     sum += error * error;
   }
-  return PsnrOf(sum / static_cast<double>(out.rgb.size()));
+  return PsnrFromMse(sum / static_cast<double>(out.rgb.size()));
 }
 
 }  // namespace nerf

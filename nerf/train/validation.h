@@ -12,18 +12,17 @@ namespace nerf {
 
 struct Model;
 
-// A fixed sample of the pixels of photographs that are not trained on, to watch the progress.
+// A fixed sample of the pixels of validation photographs.
 class Validation {
  public:
-  //   views  may be empty: then there is nothing to measure
+  //   views  may be empty: then there is no validation
   Validation(const std::vector<View>& views, std::uint64_t seed);
 
   bool Empty() const { return batch_.rays.Size() == 0; }
 
-  // dB, through the lenses as the model has refined them, and at the refined poses of photographs
-  // that it was trained on a part of. With fit_exposure each photograph is
-  // rendered at its own exposure, which nobody else knows and which is fitted to it: so are models
-  // that simulate exposures measured, and those that are to be compared with them.
+  // PSNR, dB, with the model's refined focal lengths, and its refined poses for photographs of
+  // which a part is trained on. With fit_exposure, each photograph is rendered at its own exposure,
+  // fitted to it: for models that simulate exposures, and for those compared with them.
   double Psnr(const Model& model, bool fit_exposure) const;
 
  private:
@@ -31,7 +30,7 @@ class Validation {
 
   TargetBatch batch_;
   std::vector<std::string> names_;  // of the views
-  std::vector<float> axis_;         // [R,3] of the rays' cameras
+  std::vector<float> axis_;         // [R,3] optical axis of each ray's camera
   std::vector<std::int64_t> lens_;  // [R]
 };
 

@@ -10,11 +10,11 @@
 namespace nerf {
 namespace {
 
-// A view with what decides most cells at once: the cone about its axis that holds its picture.
-struct Sight {
+// A view with the cone around its axis that contains its frustum, which decides most cells quickly.
+struct ViewCone {
   const View* view;
   Eigen::Isometry3d camera_from_normalized;
-  double half_angle;  // of the cone, radians
+  double half_angle;  // radians
 };
 
 double HalfAngle(const Camera& camera) {
@@ -26,7 +26,7 @@ double HalfAngle(const Camera& camera) {
     for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(u, 0), Eigen::Vector2d(u, camera.height),
                                          Eigen::Vector2d(0, v), Eigen::Vector2d(camera.width, v)}) {
       const auto direction = DirectionFromPixel(camera, pixel);
-      // A border beyond the lens' reach says nothing of the angle: then the whole sphere counts.
+      // A border outside the lens's field of view does not bound the angle: use the whole sphere.
       if (!direction) return std::numbers::pi;
       widest = std::max(widest, std::acos(std::clamp(direction->z(), -1.0, 1.0)));
     }
@@ -34,15 +34,16 @@ double HalfAngle(const Camera& camera) {
   return widest;
 }
 
-bool Sees(const Sight& sight, const Eigen::Vector3d& x_in_normalized, double radius) {
-  const Eigen::Vector3d x = sight.camera_from_normalized * x_in_normalized;
+// Whether a ball touches the frustum of a view.
+bool Sees(const ViewCone& cone, const Eigen::Vector3d& x_in_normalized, double radius) {
+  const Eigen::Vector3d x = cone.camera_from_normalized * x_in_normalized;
   const double distance = x.norm();
   if (distance <= radius) return true;
   const double angle = std::acos(std::clamp(x.z() / distance, -1.0, 1.0));
-  if (angle > sight.half_angle + std::asin(radius / distance)) return false;
-  const Camera& camera = sight.view->camera;
+  if (angle > cone.half_angle + std::asin(radius / distance)) return false;
+  const Camera& camera = cone.view->camera;
   const auto pixel = PixelFromPoint(camera, x);
-  if (!pixel) return true;  // beyond the lens' reach, yet the ball touches the cone
+  if (!pixel) return true;  // outside the lens's field of view, but the ball touches the cone
   const double margin = FocalLength(camera) * radius / distance + 1.0;
   return (*pixel)[0] > -margin && (*pixel)[0] < camera.width + margin && (*pixel)[1] > -margin &&
          (*pixel)[1] < camera.height + margin;
@@ -51,17 +52,18 @@ bool Sees(const Sight& sight, const Eigen::Vector3d& x_in_normalized, double rad
 }  // namespace
 
 void KeepVisibleCells(OccupancyGrid& grid, const std::vector<View>& views) {
-  std::vector<Sight> sights;
+  std::vector<ViewCone> cones;
   for (const View& view : views) {
-    sights.push_back({&view, view.normalized_from_camera.inverse(), HalfAngle(view.camera)});
+    cones.push_back({&view, view.normalized_from_camera.inverse(), HalfAngle(view.camera)});
   }
   grid.KeepVisible([&](const Eigen::Vector3f& centre, float half_diagonal) {
     const Eigen::Vector3f y = ContractedFromUnitCube(centre);
     const Eigen::Vector3d x = Uncontract(y).cast<double>();
-    // Outside the unit ball a length grows most along the radius: by 1 / (2 - |y|)^2.
+    // Outside the unit ball, inverting the contraction stretches most along the radius: by
+    // 1 / (2 - |y|)^2.
     const double shrinkage = std::min(1.0, std::pow(2.0 - y.norm(), 2));
     const double radius = 4.0 * half_diagonal / std::max(shrinkage, 1e-6);
-    return std::ranges::any_of(sights, [&](const Sight& s) { return Sees(s, x, radius); });
+    return std::ranges::any_of(cones, [&](const ViewCone& c) { return Sees(c, x, radius); });
   });
 }
 

@@ -7,8 +7,8 @@
 
 namespace nerf {
 
-// Empties for good the cells of the grid that no view sees, with a margin of the cell's own size: a
-// cell counts as seen when the ball around it touches the picture of some view.
+// Permanently marks as empty the cells of the grid that are outside all view frustums. A cell is
+// kept if its bounding sphere touches the frustum of some view.
 void KeepVisibleCells(OccupancyGrid& grid, const std::vector<View>& views);
 
 }  // namespace nerf

@@ -15,8 +15,8 @@ namespace nerf::test {
 std::vector<Eigen::Isometry3d> CameraRing(int count, double radius, double height) {
   std::vector<Eigen::Isometry3d> cameras;
   for (int i = 0; i < count; ++i) {
-    const double turn = 2 * std::numbers::pi * i / count * 3.0;  // three turns while it rises
-    const Eigen::Vector3d centre(radius * std::cos(turn), radius * std::sin(turn),
+    const double angle = 2 * std::numbers::pi * i / count * 3.0;  // three turns of a spiral
+    const Eigen::Vector3d centre(radius * std::cos(angle), radius * std::sin(angle),
                                  height * (2.0 * i / count - 1));
     const Eigen::Vector3d forward = -centre.normalized();
     const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
@@ -29,7 +29,7 @@ std::vector<Eigen::Isometry3d> CameraRing(int count, double radius, double heigh
 }
 
 AnalyticCapture::AnalyticCapture(const std::vector<Eigen::Isometry3d>& cameras, int width,
-                                 int height, const SeenAlong& seen, bool has_alpha,
+                                 int height, const RadianceAlong& radiance, bool has_alpha,
                                  int hold_out_every) {
   data.has_alpha = has_alpha;
   const Camera lens = PinholeFromFov(width, height, 0.7);
@@ -41,12 +41,12 @@ AnalyticCapture::AnalyticCapture(const std::vector<Eigen::Isometry3d>& cameras, 
     for (int pixel = 0; pixel < width * height; ++pixel) {
       const auto direction = *DirectionFromPixel(lens, {pixel % width + 0.5, pixel / width + 0.5});
       const Eigen::Vector4f rgba =
-          seen(cameras[i].translation().cast<float>(),
-               (cameras[i].linear() * direction).normalized().cast<float>());
+          radiance(cameras[i].translation().cast<float>(),
+                   (cameras[i].linear() * direction).normalized().cast<float>());
       for (int c = 0; c < 4; ++c) view.rgba.emplace_back(rgba[c]);
     }
-    const bool out = hold_out_every > 0 && i % hold_out_every == 0;
-    (out ? held_out : data.train).push_back(std::move(view));
+    const bool hold_out = hold_out_every > 0 && i % hold_out_every == 0;
+    (hold_out ? held_out : data.train).push_back(std::move(view));
   }
   scene = FactsOf(data, scene.normalized_from_world);
 }

@@ -10,25 +10,25 @@
 
 namespace nerf::test {
 
-// What a ray sees, in closed form: straight RGBA in [0,1], in the normalized frame.
-using SeenAlong =
+// The colour of a ray in closed form: straight (not premultiplied) RGBA in [0,1], in the normalized
+// frame.
+using RadianceAlong =
     std::function<Eigen::Vector4f(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction)>;
 
-// Cameras on a rising ring that look at the origin, OpenCV axes.
+// Cameras on a spiral that look at the origin, OpenCV axes.
 std::vector<Eigen::Isometry3d> CameraRing(int count, double radius, double height);
 
-// Photographs of what can be written down, as training sees them: no files, and every fourth camera
-// held out.
+// Photographs of an analytic scene in memory, with every fourth camera held out.
 struct AnalyticCapture {
   Dataset data;
   std::vector<View> held_out;
   SceneFacts scene;
 
   AnalyticCapture(const std::vector<Eigen::Isometry3d>& cameras, int width, int height,
-                  const SeenAlong& seen, bool has_alpha = false, int hold_out_every = 4);
+                  const RadianceAlong& radiance, bool has_alpha = false, int hold_out_every = 4);
 };
 
-// PSNR of a model's views, laid over black, against those photographs, over all their pixels.
+// PSNR of a model's views on black against these photographs, over all pixels.
 double PsnrOver(const Model& model, const std::vector<View>& views);
 
 }  // namespace nerf::test

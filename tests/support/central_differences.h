@@ -9,9 +9,8 @@
 
 namespace nerf::test {
 
-// Compares autograd's gradient of a scalar function with central differences, entry by entry, for
-// at most `entries` entries spread over the tensor. `x` must be a double leaf that requires
-// gradients.
+// Compares autograd's gradient of a scalar function with central differences, for at most `entries`
+// entries spread over the tensor. `x` must be a leaf of type double that requires gradients.
 inline void ExpectGradientMatchesCentralDifferences(const std::function<torch::Tensor()>& f,
                                                     torch::Tensor x, double h, double tolerance,
                                                     std::int64_t entries = 50) {

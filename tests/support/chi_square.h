@@ -16,12 +16,13 @@ inline Eigen::Array3d Uniform3(std::uint64_t seed, std::uint64_t index) {
   return {RandomFloat(seed, 0, index), RandomFloat(seed, 1, index), RandomFloat(seed, 2, index)};
 }
 
-// Whether draws over the sphere follow a density: Pearson's chi-square over bins of equal solid
-// angle (uniform in z and phi), as standard deviations from what is expected of true draws: about
-// 0 +- 1 where they follow it (chi-square of many degrees of freedom is nearly normal).
-//   draw     unit direction, or the zero vector where a draw counts as nothing
+// Tests whether samples on the sphere follow a density, by Pearson's chi-square over bins of equal
+// solid angle (uniform in z and phi). Returns the deviation from its expectation in standard
+// deviations, about 0 +- 1 if they follow it (chi-square of many degrees of freedom is nearly
+// normal).
+//   draw     unit direction, or the zero vector for a rejected sample
 //   density  1 / sr
-//   inner    points a bin and axis for the density's integral: many where it has steps
+//   inner    quadrature points per bin and axis for the density; many if it has steps
 inline double ChiSquareDeviation(const std::function<Eigen::Vector3d(std::uint64_t)>& draw,
                                  const std::function<double(const Eigen::Vector3d&)>& density,
                                  int inner = 16, int draws = 200'000) {
@@ -54,7 +55,7 @@ inline double ChiSquareDeviation(const std::function<Eigen::Vector3d(std::uint64
     const int j = std::clamp(static_cast<int>(phi / (2 * std::numbers::pi) * kPhi), 0, kPhi - 1);
     counted[i * kPhi + j] += 1;
   }
-  // Bins of few draws are pooled, or the sum would not be nearly normal.
+  // Bins with few samples are pooled, so that the sum is nearly normal.
   double chi2 = 0;
   int bins = 0;
   double pooled_expected = 0;
@@ -72,7 +73,7 @@ inline double ChiSquareDeviation(const std::function<Eigen::Vector3d(std::uint64
     chi2 += std::pow(pooled_counted - pooled_expected, 2) / pooled_expected;
     ++bins;
   } else if (pooled_counted > 30) {
-    return 1e9;  // draws where there should be none
+    return 1e9;  // samples where the density is 0
   }
   return (chi2 - bins) / std::sqrt(2.0 * bins);
 }

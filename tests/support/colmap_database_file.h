@@ -8,20 +8,20 @@
 
 namespace nerf::test {
 
-// One photograph in a database of COLMAP's: keypoints of given scales, descriptors that tell which
-// keypoint they are of.
+// An image of a COLMAP database, with keypoints of the given scales and descriptors that contain
+// the index of their keypoint.
 struct DatabaseImage {
   std::string name;
   std::vector<float> scales;
 };
 
-// Two photographs by their place in the list, and how many matches between them agree.
+// Two images, by index, and the number of inlier matches between them.
 struct DatabasePair {
   int first = 0, second = 0;
   int inliers = 0;
 };
 
-// A database with those tables of COLMAP 3.8's, and those of their columns, that are read here.
+// Writes a database with the tables and columns of COLMAP 3.8 that the project reads.
 inline void WriteColmapDatabase(const std::filesystem::path& path,
                                 const std::vector<DatabaseImage>& images,
                                 const std::vector<DatabasePair>& pairs = {}) {

@@ -10,7 +10,7 @@
 
 namespace nerf::test {
 
-// The bytes of COLMAP's files, as COLMAP 3.8 would write them.
+// The content of COLMAP's files, as written by COLMAP 3.8.
 struct ColmapFiles {
   std::string cameras;
   std::string images;
@@ -103,7 +103,7 @@ inline ColmapFiles TextColmapFiles(const ColmapContents& contents) {
   return files;
 }
 
-// Three images out of order, two cameras, two points that all of them see.
+// Three images out of order, two cameras, two points.
 inline ColmapContents SmallColmapContents() {
   ColmapContents contents;
   contents.cameras[3] = Camera{CameraModel::kSimpleRadial, 12, 8, {10, 6, 4, 0.1}};

@@ -17,7 +17,7 @@
 
 namespace nerf::test {
 
-// What the program would have said on the way.
+// Captures log messages.
 class LogText {
  public:
   LogText() : before_(spdlog::default_logger()) {
@@ -32,7 +32,7 @@ class LogText {
   std::ostringstream text_;
 };
 
-// A run of sfm::PosesFromPhotos with a COLMAP that only pretends.
+// A run of sfm::PosesFromPhotos with FakeColmap.
 class ColmapRun : public testing::Test {
  protected:
   void WritePhotos(int count) const {

@@ -11,13 +11,13 @@
 
 namespace nerf::test {
 
-// A program called `colmap`, first in PATH as long as this object lives. It writes down how it was
-// called and makes text models out of nothing. Files beside it say how it shall behave:
-//   help               what COMMAND -h prints
-//   models             what `mapper` makes, a line a model: its number and how many images it has
-//   models_relaxed     the same, for the call with lower thresholds
+// A fake program `colmap`, first in PATH during the lifetime of this object. It records its calls
+// and writes made-up text models. Files beside it define its behaviour:
+//   help               output of COMMAND -h
+//   models             models that `mapper` writes, one per line: number and count of images
+//   models_relaxed     the same for the call with lower thresholds
 //   do_COMMAND         shell commands to run instead
-//   size               width and height of images that are in no folder of their size
+//   size               width and height of images that are not in a folder named by their size
 class FakeColmap {
  public:
   FakeColmap() : old_path_(std::getenv("PATH")) {
@@ -44,7 +44,7 @@ class FakeColmap {
   }
   void Unset(const std::string& file) const { std::filesystem::remove(folder_.path() / file); }
 
-  // The calls so far, "-h" apart, with all arguments.
+  // All calls except "-h", with their arguments.
   std::vector<std::string> Calls() const {
     std::ifstream file(folder_.path() / "calls");
     std::vector<std::string> calls;

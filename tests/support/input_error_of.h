@@ -9,8 +9,8 @@
 
 namespace nerf::test {
 
-// The message of the InputError that a call throws, or "no error". Any other exception is a
-// failure; so is a message of several lines.
+// The message of the InputError that a call throws, or "no error". Other exceptions, and messages
+// of several lines, fail the test.
 template <class Call>
 std::string InputErrorOf(const Call& call) {
   try {

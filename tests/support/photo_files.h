@@ -12,7 +12,8 @@
 namespace nerf::test {
 
 // Writes an image whose left half is dark and whose right half is bright.
-//   orientation  EXIF, 1 to 8; format  of the file's values, where its kind allows it
+//   orientation  EXIF orientation, 1 to 8
+//   format       of the values, if the file format supports it
 inline void WritePhoto(const std::filesystem::path& file, int width, int height,
                        int orientation = 1, OIIO::TypeDesc format = OIIO::TypeUInt8,
                        int channels = 3) {

@@ -10,7 +10,7 @@
 
 namespace nerf::test {
 
-// A folder of its own for one test, removed at the end.
+// A temporary folder, removed by the destructor.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -28,7 +28,7 @@ class ScratchFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  // Writes a file below the folder, and the folders on the way to it.
+  // Writes a file below the folder, and creates its parent folders.
   std::filesystem::path Write(const std::filesystem::path& name, std::string_view bytes) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
@@ -37,7 +37,7 @@ class ScratchFolder {
     return file;
   }
 
-  // A grey image in PPM's format, whose header does not care about the name's ending.
+  // Writes a grey PPM image, whatever the extension.
   std::filesystem::path WriteImage(const std::filesystem::path& name, int width, int height) const {
     const std::string header =
         "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n";

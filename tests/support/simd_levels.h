@@ -15,7 +15,7 @@ inline void PrintTo(const SimdLevel& level, std::ostream* out) { *out << level.n
 
 namespace nerf::test {
 
-// Runs a test once for each SIMD level that this machine has and the program was compiled for.
+// Runs a test once per SIMD level that this machine supports and the program was compiled for.
 class EverySimdLevel : public testing::TestWithParam<kernels::SimdLevel> {
  private:
   kernels::WithSimdLevel level_{GetParam()};

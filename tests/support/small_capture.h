@@ -6,7 +6,7 @@
 
 namespace nerf::test {
 
-// A capture of the built-in scene as training sees it, without files: every 8th view held out.
+// A capture of the built-in scene in memory, with every 8th view held out.
 struct SmallCapture {
   synthetic::Capture capture;
   Dataset data;

@@ -17,22 +17,22 @@
 
 namespace nerf::test {
 
-// A field of few parameters and the engine that defines what it means, with six rays: small enough
-// for central differences.
+// LibTorchEngine on a field with few parameters, and six rays: small enough for central
+// differences.
 struct SmallEngine {
   ModelParts parts;
-  std::shared_ptr<RadianceField> field;     // of parts
-  std::shared_ptr<OccupancyGrid> grid;      // of parts
-  std::shared_ptr<ProposalField> proposal;  // of parts
+  std::shared_ptr<RadianceField> field;     // parts.field
+  std::shared_ptr<OccupancyGrid> grid;      // parts.grid
+  std::shared_ptr<ProposalField> proposal;  // parts.proposal
   ProposalOptions proposal_options;
   MarchOptions march;
   std::shared_ptr<LibTorchEngine> engine;
   TargetBatch batch;
 
-  SmallEngine(const SmallEngine&) = delete;  // the engine borrows the parts
+  SmallEngine(const SmallEngine&) = delete;  // the engine has a reference to the parts
   SmallEngine& operator=(const SmallEngine&) = delete;
 
-  //   change  of the parts, before the engine is made of them
+  //   change  modifies the parts before the engine is created
   explicit SmallEngine(torch::Dtype dtype, double stop_transmittance = 1e-9,
                        bool with_proposal = false,
                        const std::function<void(ModelParts&)>& change = {}) {
@@ -91,8 +91,8 @@ struct SmallEngine {
   }
 };
 
-// From the rays to the loss through march, encoding, networks and compositing: the gradients of the
-// field's parameters, and of others that the loss depends on, are central differences.
+// Compares the gradients of the loss in the field's parameters and in `others` with central
+// differences, through marching, encoding, networks and compositing.
 inline void ExpectGradientsOfTheWholePath(SmallEngine& e,
                                           const std::vector<torch::Tensor>& others = {}) {
   std::vector<std::pair<std::string, torch::Tensor>> parameters;

@@ -16,7 +16,7 @@ namespace nerf::test {
 
 inline const std::atomic<bool> never_stop = false;
 
-// A configuration that trains a picture-book scene in seconds.
+// A configuration that trains a simple scene in seconds.
 inline Config TinyConfig(std::int64_t steps, const std::vector<std::string>& changes = {}) {
   std::vector<std::string> assignments = {"encoding.log2_table_size=12",
                                           "encoding.max_resolution=64",
@@ -35,7 +35,7 @@ inline Config TinyConfig(std::int64_t steps, const std::vector<std::string>& cha
   return LoadConfig("base", assignments);
 }
 
-// Trains; what a checkpoint then holds is finite, whatever the scene.
+// Trains a model. Checks that training finishes and that the checkpoint is finite.
 inline Model Trained(const Config& config, const SceneFacts& scene, const Dataset& data) {
   const ScratchFolder run;
   Trainer trainer(config, scene, data, run.path());

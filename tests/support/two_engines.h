@@ -20,7 +20,7 @@
 
 namespace nerf::test {
 
-// One field, and both engines on it.
+// Both engines on the same field, with a batch of rays.
 struct TwoEngines {
   kernels::HashGridOptions encoding;
   FieldOptions field_options;
@@ -40,11 +40,11 @@ struct TwoEngines {
 
   std::shared_ptr<RadianceField> field;
   std::shared_ptr<OccupancyGrid> grid;
-  // That the engines borrow: where it stays when this moves.
+  // On the heap, because the engines have references to it and this object may be moved.
   std::unique_ptr<ModelParts> parts = std::make_unique<ModelParts>();
   std::unique_ptr<Engine> libtorch, fused;
   TargetBatch batch;
-  StepContext context;  // of ExpectTheSame
+  StepContext context;  // for ExpectTheSame
 
   TwoEngines() {
     encoding.levels = 5;
@@ -60,7 +60,8 @@ struct TwoEngines {
   void Make(int rays, bool with_proposal = false) {
     field = std::make_shared<RadianceField>(encoding, field_options, color, 5, color_model);
     {
-      // Large enough a table for rays that end early, for colours and densities of all kinds.
+      // Values large enough for rays that stop early, and for a wide range of colours and
+      // densities.
       const torch::NoGradGuard no_grad;
       torch::manual_seed(1);
       for (auto& p : field->named_parameters()) {
@@ -113,24 +114,26 @@ struct TwoEngines {
     }
   }
 
+  // Returns all gradients and resets them.
   std::map<std::string, torch::Tensor> Gradients() {
     std::map<std::string, torch::Tensor> gradients;
-    const auto take = [&](torch::nn::Module& module, const std::string& prefix) {
+    const auto collect = [&](torch::nn::Module& module, const std::string& prefix) {
       for (auto& p : module.named_parameters()) {
         gradients[prefix + p.key()] = p.value().grad().clone();
         p.value().mutable_grad() = torch::Tensor();
       }
     };
-    take(*field, "");
-    if (proposal) take(*proposal, "proposal.");
-    if (background) take(*background, "background.");
-    if (exposure) take(*exposure, "exposure.");
-    if (pose_refinement) take(*pose_refinement, "poses.");
+    collect(*field, "");
+    if (proposal) collect(*proposal, "proposal.");
+    if (background) collect(*background, "background.");
+    if (exposure) collect(*exposure, "exposure.");
+    if (pose_refinement) collect(*pose_refinement, "poses.");
     return gradients;
   }
 
-  // tolerance: of the gradients, as a part of their largest value. Rounding alone asks for 1e-4;
-  // where samples stand a rounding apart, a neuron's sign may differ for one of them.
+  // Expects equal renderings, losses and gradients.
+  //   tolerance  of gradients, relative to their largest value. Rounding needs 1e-4; where sample
+  //              positions differ by rounding, the sign of a neuron's input can differ, too.
   void ExpectTheSame(double tolerance = 1e-4) {
     parts->annealing = context.annealing;
     const RenderOutput a = libtorch->Render(batch.rays), b = fused->Render(batch.rays);

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(RelightCommand, RelightsWhatSamplePhotographed) {
+TEST(RelightCommand, RelightsAGeneratedLightStage) {
   const test::ScratchFolder scratch;
   const std::string stage = (scratch.path() / "stage").string();
   const auto sample = test::RunNerf("sample " + stage + " --light-stage 8 --width 32 --height 18");
@@ -25,14 +25,14 @@ TEST(RelightCommand, RelightsWhatSamplePhotographed) {
   EXPECT_TRUE(std::filesystem::exists(scratch.path() / "out/relit.exr"));
 }
 
-TEST(LightStageFlags, AloneAreRefused) {
+TEST(LightStageFlags, RequireLightStage) {
   const auto result = test::RunNerf("sample nowhere --environment map.hdr");
   EXPECT_EQ(result.exit_status, 2);
   EXPECT_THAT(result.output, HasSubstr("--light-stage"));
   EXPECT_FALSE(std::filesystem::exists("nowhere"));
 }
 
-TEST(LightStageFlags, RefuseWhatTheyWouldIgnore) {
+TEST(LightStageFlags, RejectFlagsThatWouldBeIgnored) {
   for (const char* flags :
        {"--light-stage 0", "--light-stage 3 --views 5", "--light-stage 3 --samples 4",
         "--light-stage 3 --seed 1", "--light-stage 3 --scenario exposure",
@@ -44,7 +44,7 @@ TEST(LightStageFlags, RefuseWhatTheyWouldIgnore) {
   }
 }
 
-// A capture of three lights and a map, ready to be relit.
+// A capture with three lights.
 class SmallStage : public testing::Test {
  protected:
   SmallStage() {
@@ -60,7 +60,7 @@ class SmallStage : public testing::Test {
   std::string out_ = (scratch_.path() / "out").string();
 };
 
-TEST_F(SmallStage, RefusesNumbersOutOfRangeAndLeavesNothing) {
+TEST_F(SmallStage, RejectsNumbersOutOfRangeAndWritesNothing) {
   for (const char* flags : {"--rotate nan", "--rotate 1e300", "--rotate inf", "--exposure nan",
                             "--exposure inf", "--exposure 1000", "--frames -1", "--memory-mb 0"}) {
     const auto result = Relight(flags);
@@ -70,7 +70,7 @@ TEST_F(SmallStage, RefusesNumbersOutOfRangeAndLeavesNothing) {
   }
 }
 
-TEST_F(SmallStage, RefusesATruthOfAnotherSizeBeforeItSumsAnything) {
+TEST_F(SmallStage, RejectsATruthOfAnotherSizeBeforeRelighting) {
   scratch_.WriteImage("truth.ppm", 9, 6);
   const auto result = Relight("--truth " + (scratch_.path() / "truth.ppm").string());
   EXPECT_EQ(result.exit_status, 2);
@@ -78,7 +78,7 @@ TEST_F(SmallStage, RefusesATruthOfAnotherSizeBeforeItSumsAnything) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
-TEST_F(SmallStage, RefusesFewerThanThreeLightsAndTheDark) {
+TEST_F(SmallStage, RejectsFewerThanThreeLightsAndBlackImages) {
   for (const char* name : {"light_0000.exr", "light_0001.exr", "light_0002.exr"}) {
     scratch_.Write(std::filesystem::path("stage") / name,
                    "P6\n8 6\n255\n" + std::string(144, '\0'));
@@ -94,15 +94,15 @@ TEST_F(SmallStage, RefusesFewerThanThreeLightsAndTheDark) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
-TEST_F(SmallStage, SaysHowMuchLightComesFromWhereNoLightStood) {
-  EXPECT_THAT(Relight("").output, Not(HasSubstr("left out")));
+TEST_F(SmallStage, ReportsTheShareOfLightFromDirectionsWithoutLights) {
+  EXPECT_THAT(Relight("").output, Not(HasSubstr("omitted")));
   scratch_.Write("stage/lights.txt", "0 0 1\n0.5 0 1\n0 0.5 1\n");
   const auto frontal = Relight("");
   EXPECT_EQ(frontal.exit_status, 0);
-  EXPECT_THAT(frontal.output, HasSubstr("left out"));
+  EXPECT_THAT(frontal.output, HasSubstr("omitted"));
 }
 
-TEST(RelightCommand, RefusesWhatIsNoLight) {
+TEST(RelightCommand, RejectsAnUnknownLight) {
   const test::ScratchFolder scratch;
   const std::string stage = (scratch.path() / "stage").string();
   ASSERT_EQ(test::RunNerf("sample " + stage + " --light-stage 3 --width 8 --height 6").exit_status,
@@ -113,7 +113,7 @@ TEST(RelightCommand, RefusesWhatIsNoLight) {
   EXPECT_THAT(result.output, HasSubstr("D65"));
 }
 
-TEST(RelightCommand, RefusesAFolderWithoutLights) {
+TEST(RelightCommand, RejectsAFolderWithoutLights) {
   const test::ScratchFolder scratch;
   for (const char* name : {"1.ppm", "2.ppm", "3.ppm"}) scratch.WriteImage(name, 8, 6);
   const auto result = test::RunNerf("relight " + scratch.path().string() + " --environment D65");
@@ -121,7 +121,7 @@ TEST(RelightCommand, RefusesAFolderWithoutLights) {
   EXPECT_THAT(result.output, HasSubstr("lights.txt"));
 }
 
-TEST(PhotometricStereoCommand, RefusesCoplanarLightsAndLeavesNothing) {
+TEST(PhotometricStereoCommand, RejectsCoplanarLightsAndWritesNothing) {
   const test::ScratchFolder scratch;
   for (const char* name : {"1.ppm", "2.ppm", "3.ppm"}) scratch.WriteImage(name, 8, 6);
   scratch.Write("lights.txt", "0 0 1\n1 0 1\n-1 0 1\n");
@@ -132,7 +132,7 @@ TEST(PhotometricStereoCommand, RefusesCoplanarLightsAndLeavesNothing) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-TEST(PhotometricStereoCommand, RefusesNumbersOutOfRange) {
+TEST(PhotometricStereoCommand, RejectsNumbersOutOfRange) {
   const test::ScratchFolder scratch;
   for (const char* name : {"1.ppm", "2.ppm", "3.ppm"}) scratch.WriteImage(name, 8, 6);
   scratch.Write("lights.txt", "0 0 1\n1 0 1\n0 1 1\n");
@@ -146,8 +146,8 @@ TEST(PhotometricStereoCommand, RefusesNumbersOutOfRange) {
   }
 }
 
-// From within the folder of the data set, twice.
-TEST(PhotometricStereoCommand, DoesNotTakeItsResultsForASubject) {
+// Run twice from within the folder of the data set.
+TEST(PhotometricStereoCommand, DoesNotReadItsResultsAsInput) {
   const test::ScratchFolder scratch;
   for (const char* name : {"ph/cup/1.ppm", "ph/cup/2.ppm", "ph/cup/3.ppm"}) {
     scratch.WriteImage(name, 8, 6);

@@ -41,24 +41,24 @@ class EffectsCommands : public testing::Test {
   static std::string Path(const std::string& name) { return (folder_->path() / name).string(); }
 
   static std::string Train(const std::string& capture, const std::string& run,
-                           const std::string& more) {
+                           const std::string& flags) {
     return fmt::format(
         "train {}/truth/sparse -o {} --threads 2 --set train.steps=60 "
         "--set train.samples_per_batch=2048 --set encoding.log2_table_size=12 "
         "--set field.hidden_width=16 --set occupancy.resolution=32 {}",
-        Path(capture), Path(run), more);
+        Path(capture), Path(run), flags);
   }
 
   static nlohmann::json Json(const std::string& file) {
     return nlohmann::json::parse(ReadWholeFile(Path(file)));
   }
 
-  // A refusal: one line, exit status 2, naming what is wrong.
-  static void ExpectRefused(const std::string& arguments,
-                            const testing::Matcher<std::string>& says) {
+  // Expects exit status 2 and a message of one line.
+  static void ExpectRejected(const std::string& arguments,
+                             const testing::Matcher<std::string>& message) {
     const auto result = RunNerf(arguments);
     EXPECT_EQ(result.exit_status, 2) << result.output;
-    EXPECT_THAT(result.output, says);
+    EXPECT_THAT(result.output, message);
     EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
   }
 
@@ -81,26 +81,26 @@ TEST_F(EffectsCommands, InspectPrintsAVerdictForEachEffectWithItsEvidence) {
   EXPECT_EQ(root.at("exposure_stops").size(), 17u);
 }
 
-TEST_F(EffectsCommands, InspectOfPhotographsAloneTellsWhatTheyTell) {
-  const auto seen = RunNerf("inspect " + Path("masks/images"));
-  EXPECT_EQ(seen.exit_status, 0) << seen.output;
-  EXPECT_THAT(seen.output, AllOf(HasSubstr("17 of 17 photographs have one"),
-                                 HasSubstr("without poses"), HasSubstr("nerf poses")));
+TEST_F(EffectsCommands, InspectReportsWhatPhotographsAloneShow) {
+  const auto result = RunNerf("inspect " + Path("masks/images"));
+  EXPECT_EQ(result.exit_status, 0) << result.output;
+  EXPECT_THAT(result.output, AllOf(HasSubstr("17 of 17 photographs have a mask"),
+                                   HasSubstr("without poses"), HasSubstr("nerf poses")));
 }
 
-TEST_F(EffectsCommands, InspectDrawsAPictureWhereItIsToldTo) {
+TEST_F(EffectsCommands, InspectWritesAPlotToAGivenFile) {
   const std::string inspect = "inspect " + Path("exposure/truth/sparse") + " --picture ";
-  const auto drawn = RunNerf(inspect + Path("seen.png"));
-  ASSERT_EQ(drawn.exit_status, 0) << drawn.output;
-  EXPECT_THAT(drawn.output, HasSubstr("exposure"));
-  EXPECT_EQ(ReadImage(Path("seen.png"), false).channels, 3);
+  const auto result = RunNerf(inspect + Path("plot.png"));
+  ASSERT_EQ(result.exit_status, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("exposure"));
+  EXPECT_EQ(ReadImage(Path("plot.png"), false).channels, 3);
 
-  ExpectRefused(inspect + Path("no-such-folder/seen.png"), HasSubstr("no-such-folder/seen.png"));
-  ExpectRefused(inspect + Path("seen.rain"), HasSubstr("seen.rain"));
+  ExpectRejected(inspect + Path("no-such-folder/plot.png"), HasSubstr("no-such-folder/plot.png"));
+  ExpectRejected(inspect + Path("plot.rain"), HasSubstr("plot.rain"));
   EXPECT_FALSE(fs::exists(Path("no-such-folder")));
 }
 
-TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
+TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndReportsWhy) {
   const auto run = RunNerf(Train("exposure", "auto", ""));
   ASSERT_EQ(run.exit_status, 0) << run.output;
   EXPECT_THAT(run.output, HasSubstr("effects that the capture calls for"));
@@ -110,10 +110,10 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
   EXPECT_GT(Json("auto/config.json").at("march").at("near_distance"), 0.1);
 
   const auto eval = RunNerf("eval " + Path("auto"));
-  EXPECT_THAT(eval.output, HasSubstr("photograph's exposure, fitted"));
+  EXPECT_THAT(eval.output, HasSubstr("exposure fitted to its photograph"));
   EXPECT_TRUE(Json("auto/eval/eval.json").at("exposure_fitted"));
 
-  // A picture as one of the photographs is exposed is another picture.
+  // --exposure-of changes the image.
   const auto at = [&](const std::string& name, const std::string& flags) {
     const auto render =
         RunNerf("render " + Path("auto") + " --image view_001.png -o " + Path(name) + " " + flags);
@@ -121,19 +121,19 @@ TEST_F(EffectsCommands, TrainSimulatesWhatTheCaptureCallsForAndSaysWhy) {
     return ReadImage(Path(name + "/view_001.png"), false).pixels;
   };
   EXPECT_NE(at("mean", ""), at("as", "--exposure-of view_002.png"));
-  ExpectRefused("render " + Path("auto") + " --exposure-of nobody.png", HasSubstr("nobody.png"));
+  ExpectRejected("render " + Path("auto") + " --exposure-of nobody.png", HasSubstr("nobody.png"));
 }
 
-// A pixel of each photograph that is a little transparent: not enough to be told by inspect, too
-// much for a background.
-TEST_F(EffectsCommands, ALittleAlphaIsNoReasonToStop) {
+// One slightly transparent pixel per photograph: too few to be found by inspection, but a learned
+// background does not allow any.
+TEST_F(EffectsCommands, BackgroundIsTurnedOffForALittleAlpha) {
   const auto made = RunNerf("sample " + Path("sky") +
                             " --scenario background --views 17 --width 64 --height 48 --samples 2");
   ASSERT_EQ(made.exit_status, 0) << made.output;
-  const std::string names = RunNerf("train " + Path("sky/truth/sparse") + " -o " + Path("clear") +
-                                    " --threads 2 --set train.steps=20")
-                                .output;
-  ASSERT_FALSE(Json("clear/config.json").at("effects").at("background").is_null()) << names;
+  const std::string log = RunNerf("train " + Path("sky/truth/sparse") + " -o " + Path("clear") +
+                                  " --threads 2 --set train.steps=20")
+                              .output;
+  ASSERT_FALSE(Json("clear/config.json").at("effects").at("background").is_null()) << log;
   for (const auto& entry : fs::recursive_directory_iterator(Path("sky"))) {
     if (entry.path().extension() != ".png") continue;
     const Image opaque = ReadImage(entry.path(), false);
@@ -147,36 +147,36 @@ TEST_F(EffectsCommands, ALittleAlphaIsNoReasonToStop) {
   }
   const auto run = RunNerf(Train("sky", "little", ""));
   ASSERT_EQ(run.exit_status, 0) << run.output;
-  EXPECT_THAT(run.output, HasSubstr("some photograph has alpha"));
+  EXPECT_THAT(run.output, HasSubstr("some photographs have alpha"));
   const auto effects = Json("little/config.json").at("effects");
   EXPECT_TRUE(effects.at("background").is_null());
   EXPECT_FALSE(effects.at("unbounded").is_null());
 }
 
-TEST_F(EffectsCommands, RefinedPosesAreToldAndWritten) {
+TEST_F(EffectsCommands, RefinedPosesAreReportedAndWritten) {
   const auto run = RunNerf(Train("exposure", "refined", "--effects +pose_refinement"));
   ASSERT_EQ(run.exit_status, 0) << run.output;
-  EXPECT_THAT(run.output, HasSubstr("cameras turned by"));
+  EXPECT_THAT(run.output, HasSubstr("cameras rotated by"));
   const auto frames = Json("refined/transforms.json").at("frames");
   const auto refined = Json("refined/refined_transforms.json").at("frames");
   ASSERT_EQ(refined.size(), frames.size());
   int moved = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    double change = 0;  // more than reading and writing changes
+    double change = 0;
     for (int k = 0; k < 12; ++k) {
       const auto at = [&](const nlohmann::json& frame) {
         return frame.at("transform_matrix").at(k / 4).at(k % 4).get<double>();
       };
       change = std::max(change, std::fabs(at(refined[i]) - at(frames[i])));
     }
-    moved += change > 1e-9;
+    moved += change > 1e-9;  // more than by rounding
   }
   EXPECT_GT(moved, 10);
-  EXPECT_LT(moved, 17);  // of those held out nothing is learned
+  EXPECT_LT(moved, 17);  // held-out photographs are not refined
   EXPECT_EQ(RunNerf("eval " + Path("refined")).exit_status, 0);
 }
 
-TEST_F(EffectsCommands, EvalMeasuresWhatEachEffectInUseIsWorthAndCosts) {
+TEST_F(EffectsCommands, EvalMeasuresGainAndCostOfEachSimulatedEffect) {
   const auto run =
       RunNerf(Train("exposure", "worth", "--effects -view_dependence,+pose_refinement"));
   ASSERT_EQ(run.exit_status, 0) << run.output;
@@ -186,20 +186,20 @@ TEST_F(EffectsCommands, EvalMeasuresWhatEachEffectInUseIsWorthAndCosts) {
   EXPECT_THAT(table.output, AllOf(HasSubstr("gain dB"), HasSubstr("after 10 steps"),
                                   HasSubstr("pose_refinement: on the right halves")));
 
-  const auto told = RunNerf(eval + "200 --json");
-  ASSERT_EQ(told.exit_status, 0) << told.output;
-  const auto json = nlohmann::json::parse(told.output);
+  const auto printed = RunNerf(eval + "200 --json");
+  ASSERT_EQ(printed.exit_status, 0) << printed.output;
+  const auto json = nlohmann::json::parse(printed.output);
   EXPECT_EQ(json, Json("worth/eval/effects_worth.json"));
   std::vector<std::string> measured;
-  for (const auto& worth : json.at("effects")) {
-    const std::string effect = worth.at("effect");
+  for (const auto& measurement : json.at("effects")) {
+    const std::string effect = measurement.at("effect");
     measured.push_back(effect);
-    EXPECT_EQ(worth.at("on_halves"), effect == "pose_refinement");
-    EXPECT_GT(worth.at("seconds_a_step_with"), 0);
-    // Photographs a stop apart.
+    EXPECT_EQ(measurement.at("on_halves"), effect == "pose_refinement");
+    EXPECT_GT(measurement.at("seconds_a_step_with"), 0);
+    // Exposures differ by up to a stop.
     if (effect == "exposure") {
-      EXPECT_GT(worth.at("psnr_with"), worth.at("psnr_without"));
-      EXPECT_GT(worth.at("megabytes"), 0);
+      EXPECT_GT(measurement.at("psnr_with"), measurement.at("psnr_without"));
+      EXPECT_GT(measurement.at("megabytes"), 0);
     }
   }
   EXPECT_THAT(measured,
@@ -208,10 +208,10 @@ TEST_F(EffectsCommands, EvalMeasuresWhatEachEffectInUseIsWorthAndCosts) {
 
   const auto all = RunNerf(Train("exposure", "none-held-out", "--set data.test_every=0"));
   ASSERT_EQ(all.exit_status, 0) << all.output;
-  ExpectRefused("eval --effects " + Path("none-held-out"), HasSubstr("is held out"));
+  ExpectRejected("eval --effects " + Path("none-held-out"), HasSubstr("is held out"));
 }
 
-TEST_F(EffectsCommands, WhatAPersonSaysStands) {
+TEST_F(EffectsCommands, DecisionsOfTheUserAreRespected) {
   const auto run = RunNerf(
       Train("exposure", "asked", "--effects -exposure,+robust --set march.near_distance=0.3"));
   ASSERT_EQ(run.exit_status, 0) << run.output;
@@ -220,8 +220,8 @@ TEST_F(EffectsCommands, WhatAPersonSaysStands) {
   EXPECT_EQ(Json("asked/config.json").at("march").at("near_distance"), 0.3);
   EXPECT_TRUE(effects.at("exposure").is_null());
   EXPECT_FALSE(effects.at("robust").is_null());
-  ExpectRefused("render " + Path("asked") + " --exposure-of view_001.png",
-                HasSubstr("simulates no exposures"));
+  ExpectRejected("render " + Path("asked") + " --exposure-of view_001.png",
+                 HasSubstr("does not simulate exposures"));
 
   const auto configured = RunNerf(Train("exposure", "configured", "--effects config"));
   EXPECT_THAT(configured.output, Not(HasSubstr("effects that the capture calls for")));
@@ -234,7 +234,7 @@ TEST_F(EffectsCommands, WhatAPersonSaysStands) {
   EXPECT_TRUE(Json("pinned/config.json").at("effects").at("exposure").is_null());
 }
 
-TEST_F(EffectsCommands, MasksAreFoundAndCountInTrainingAndMeasuring) {
+TEST_F(EffectsCommands, MasksAreFoundAndUsedInTrainingAndEvaluation) {
   const auto run = RunNerf(Train("masks", "masked", ""));
   ASSERT_EQ(run.exit_status, 0) << run.output;
   EXPECT_EQ(Json("masked/config.json").at("effects").at("masks").at("meaning"), "ignore");
@@ -242,19 +242,19 @@ TEST_F(EffectsCommands, MasksAreFoundAndCountInTrainingAndMeasuring) {
   EXPECT_EQ(RunNerf("eval " + Path("masked")).exit_status, 0);
 }
 
-TEST_F(EffectsCommands, RefuseWhatCannotBe) {
-  ExpectRefused(Train("exposure", "x", "--effects +rain"),
-                AllOf(HasSubstr("+rain"), HasSubstr("exposure")));
-  ExpectRefused(Train("exposure", "x", "--effects exposure"), HasSubstr("+exposure"));
-  ExpectRefused(Train("exposure", "x", "--set effects.rain={}"), HasSubstr("effects.rain"));
-  ExpectRefused("sample " + Path("y") + " --scenario rain", HasSubstr("rain"));
+TEST_F(EffectsCommands, InvalidRequestsAreRejected) {
+  ExpectRejected(Train("exposure", "x", "--effects +rain"),
+                 AllOf(HasSubstr("+rain"), HasSubstr("exposure")));
+  ExpectRejected(Train("exposure", "x", "--effects exposure"), HasSubstr("+exposure"));
+  ExpectRejected(Train("exposure", "x", "--set effects.rain={}"), HasSubstr("effects.rain"));
+  ExpectRejected("sample " + Path("y") + " --scenario rain", HasSubstr("rain"));
   EXPECT_FALSE(fs::exists(Path("x")));
 
   const std::string masks = Path("masks/masks/view_003.png");
   const std::string before = ReadWholeFile(masks);
   WriteImage(masks, Image(8, 8, 3));
-  ExpectRefused("inspect " + Path("masks/truth/sparse"),
-                AllOf(HasSubstr("view_003.png"), HasSubstr("8x8"), HasSubstr("64x48")));
+  ExpectRejected("inspect " + Path("masks/truth/sparse"),
+                 AllOf(HasSubstr("view_003.png"), HasSubstr("8x8"), HasSubstr("64x48")));
   WriteFileAtomically(masks, before);
 }
 

@@ -19,8 +19,7 @@ struct ProgramResult {
   std::string output;  // standard output and standard error
 };
 
-// Runs the built program with the shell's words in `arguments`, as a person types them, after the
-// shell commands in `before`.
+// Runs the built program with `arguments` in a shell, after the shell commands in `before`.
 inline ProgramResult RunNerf(const std::string& arguments, const std::string& before = "") {
   ProgramResult result;
   const std::string command = before + NERF_PROGRAM + " " + arguments + " 2>&1";
@@ -35,8 +34,8 @@ inline ProgramResult RunNerf(const std::string& arguments, const std::string& be
   return result;
 }
 
-// Runs the program until a file is there, and ends it with SIGKILL.
-inline void KillOnce(const std::filesystem::path& file, const std::string& arguments) {
+// Runs the program until a file exists, and then kills it with SIGKILL.
+inline void KillWhenExists(const std::filesystem::path& file, const std::string& arguments) {
   const std::string command = "exec " + std::string(NERF_PROGRAM) + " " + arguments;
   const pid_t child = fork();
   ASSERT_GE(child, 0);
@@ -50,7 +49,7 @@ inline void KillOnce(const std::filesystem::path& file, const std::string& argum
   }
   kill(child, SIGKILL);
   waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFSIGNALED(status)) << "the run ended before it could be killed";
+  ASSERT_TRUE(WIFSIGNALED(status)) << "the run finished before it could be killed";
 }
 
 }  // namespace nerf::test

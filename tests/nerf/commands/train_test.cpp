@@ -21,7 +21,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// A small capture with true poses, made once.
+// A small capture with true poses, generated once.
 class TrainCommand : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -46,17 +46,17 @@ class TrainCommand : public testing::Test {
         Poses(), Path(run));
   }
 
-  // A run that SIGKILL ended as soon as its first checkpoint stood.
+  // Starts a run and kills it with SIGKILL as soon as its first checkpoint exists.
   static void KillAtFirstCheckpoint(const std::string& run) {
-    test::KillOnce(Path(run + "/checkpoint.nerf"), Arguments(run));
+    test::KillWhenExists(Path(run + "/checkpoint.nerf"), Arguments(run));
   }
 
-  // A refusal: one line, exit status 2, naming what is wrong.
-  static void ExpectRefused(const std::string& arguments,
-                            const testing::Matcher<std::string>& says) {
+  // Expects exit status 2 and a message of one line.
+  static void ExpectRejected(const std::string& arguments,
+                             const testing::Matcher<std::string>& message) {
     const auto result = RunNerf(arguments);
     EXPECT_EQ(result.exit_status, 2) << result.output;
-    EXPECT_THAT(result.output, says);
+    EXPECT_THAT(result.output, message);
     EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
   }
 
@@ -65,14 +65,13 @@ class TrainCommand : public testing::Test {
 test::ScratchFolder* TrainCommand::folder_ = nullptr;
 
 TEST_F(TrainCommand, AKilledRunResumesBitForBit) {
-  const auto straight = RunNerf(Arguments("straight"));
-  ASSERT_EQ(straight.exit_status, 0) << straight.output;
+  const auto uninterrupted = RunNerf(Arguments("uninterrupted"));
+  ASSERT_EQ(uninterrupted.exit_status, 0) << uninterrupted.output;
 
   ASSERT_NO_FATAL_FAILURE(KillAtFirstCheckpoint("killed"));
   const auto resumed = RunNerf("train --resume --threads 2 -o " + Path("killed"));
   ASSERT_EQ(resumed.exit_status, 0) << resumed.output;
-  // The parameters are the same where every digit of what they render is (torch_tests compares them
-  // bit by bit after a stop on request).
+  // Equal scores in all digits imply equal parameters (torch_tests compare them bit by bit).
   const auto scores = [](const std::string& run) {
     const auto eval = RunNerf("eval --json " + Path(run));
     EXPECT_EQ(eval.exit_status, 0) << eval.output;
@@ -80,18 +79,17 @@ TEST_F(TrainCommand, AKilledRunResumesBitForBit) {
     for (auto& image : json["images"]) image.erase("seconds");
     return json["images"].dump();
   };
-  EXPECT_EQ(scores("straight"), scores("killed"));
+  EXPECT_EQ(scores("uninterrupted"), scores("killed"));
 
-  // What stands now is not overwritten by accident.
-  ExpectRefused(Arguments("killed"), AllOf(HasSubstr("--resume"), HasSubstr("killed")));
+  // A finished run is not overwritten.
+  ExpectRejected(Arguments("killed"), AllOf(HasSubstr("--resume"), HasSubstr("killed")));
   for (const char* change : {" --set train.steps=5", " --config fast", " --downscale 2"}) {
-    ExpectRefused("train --resume -o " + Path("killed") + change, HasSubstr("--set"));
+    ExpectRejected("train --resume -o " + Path("killed") + change, HasSubstr("--set"));
   }
 }
 
-// A limit of the size of files stands in for a full disk: write() fails half-way in the same
-// manner.
-TEST_F(TrainCommand, AFullDiskLeavesTheLastGoodCheckpointToResumeFrom) {
+// A limit on the file size simulates a full disk: write() fails half-way in the same way.
+TEST_F(TrainCommand, AFullDiskKeepsTheLastGoodCheckpoint) {
   ASSERT_NO_FATAL_FAILURE(KillAtFirstCheckpoint("full"));
   const std::string resume = "train --resume --threads 2 -o " + Path("full");
   const std::string before = ReadWholeFile(Path("full/checkpoint.nerf"));
@@ -109,7 +107,7 @@ TEST_F(TrainCommand, RendersAndEvaluates) {
   const auto eval = RunNerf("eval " + Path("run"));
   EXPECT_EQ(eval.exit_status, 0) << eval.output;
   EXPECT_THAT(eval.output, AllOf(HasSubstr("\nview_000.png "), HasSubstr("mean")))
-      << "images are called what the input calls them";
+      << "images must have the names of the input";
   EXPECT_TRUE(fs::exists(Path("run/eval/contact_sheet.png")));
 
   EXPECT_EQ(RunNerf("render " + Path("run") + " --depth --opacity").exit_status, 0);
@@ -128,17 +126,17 @@ TEST_F(TrainCommand, RendersAndEvaluates) {
   const auto one = RunNerf("render " + Path("run") + " --image view_003.png");
   EXPECT_EQ(one.exit_status, 0) << one.output;
   EXPECT_TRUE(fs::exists(Path("run/renders/image/view_003.png")));
-  ExpectRefused("render " + Path("run") + " --path orbit --fps 0", HasSubstr("--fps"));
+  ExpectRejected("render " + Path("run") + " --path orbit --fps 0", HasSubstr("--fps"));
   folder_->Write("pose.json",
                  R"({"transform_matrix": [[1,0,0,0],[0,0,-1,-3],[0,1,0,1],[0,0,0,1]], "fov": 40})");
   EXPECT_EQ(
       RunNerf("render --pose " + Path("pose.json") + " --format exr " + Path("run")).exit_status,
       0);
   EXPECT_TRUE(fs::exists(Path("run/renders/pose/pose.exr")));
-  ExpectRefused("render " + Path("run") + " --image none.png", HasSubstr("none.png"));
+  ExpectRejected("render " + Path("run") + " --image none.png", HasSubstr("none.png"));
 }
 
-TEST_F(TrainCommand, RendersWithoutThePhotographsAndSaysWhichEvalMissed) {
+TEST_F(TrainCommand, RendersWithoutPhotographsAndEvalNamesMissingOnes) {
   fs::copy(Path("sample"), Path("moved"), fs::copy_options::recursive);
   const auto trained =
       RunNerf("train " + Path("moved/truth/transforms.json") + " -o " + Path("moved-run") +
@@ -151,56 +149,56 @@ TEST_F(TrainCommand, RendersWithoutThePhotographsAndSaysWhichEvalMissed) {
   fs::remove_all(Path("moved/images"));
   const auto render = RunNerf("render " + Path("moved-run") + " --path orbit --frames 1");
   EXPECT_EQ(render.exit_status, 0) << render.output;
-  const auto blind = RunNerf("eval " + Path("moved-run"));
-  EXPECT_EQ(blind.exit_status, 2) << blind.output;
-  EXPECT_THAT(blind.output, HasSubstr("none of the"));
+  const auto none = RunNerf("eval " + Path("moved-run"));
+  EXPECT_EQ(none.exit_status, 2) << none.output;
+  EXPECT_THAT(none.output, HasSubstr("none of the"));
 }
 
-TEST_F(TrainCommand, NeverWritesOverFilesThatAreNotItsOwn) {
+TEST_F(TrainCommand, DoesNotOverwriteForeignFiles) {
   fs::copy(Path("sample/truth"), Path("mine"), fs::copy_options::recursive);
   const std::string before = ReadWholeFile(Path("mine/transforms.json"));
-  ExpectRefused("train " + Path("mine/transforms.json") + " -o " + Path("mine"),
-                AllOf(HasSubstr("mine/transforms.json"), HasSubstr("-o")));
+  ExpectRejected("train " + Path("mine/transforms.json") + " -o " + Path("mine"),
+                 AllOf(HasSubstr("mine/transforms.json"), HasSubstr("-o")));
   EXPECT_EQ(ReadWholeFile(Path("mine/transforms.json")), before);
   EXPECT_FALSE(fs::exists(Path("mine/config.json")));
 }
 
-TEST_F(TrainCommand, StaysQuietWhereThereIsNoTerminal) {
+TEST_F(TrainCommand, PrintsNoProgressWithoutATerminal) {
   const auto result = RunNerf(Arguments("quiet"));
   EXPECT_EQ(result.exit_status, 0) << result.output;
   EXPECT_LE(std::ranges::count(result.output, '\n'), 6) << result.output;
   EXPECT_THAT(result.output, Not(HasSubstr("\r")));
 }
 
-TEST_F(TrainCommand, BadInputGetsOneClearLine) {
-  ExpectRefused("train /no/such/folder -o " + Path("x"), HasSubstr("/no/such/folder"));
+TEST_F(TrainCommand, BadInputIsReportedInOneLine) {
+  ExpectRejected("train /no/such/folder -o " + Path("x"), HasSubstr("/no/such/folder"));
   fs::create_directories(Path("empty"));
-  ExpectRefused("train " + Path("empty") + " -o " + Path("x"), HasSubstr("empty"));
-  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --config fsat", HasSubstr("fsat"));
-  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --set train.stps=1",
-                HasSubstr("train.stps"));
-  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --set train.steps=no",
-                HasSubstr("train.steps"));
-  ExpectRefused("train " + Poses() + " -o /proc/nope", HasSubstr("/proc/nope"));
-  ExpectRefused("train " + Poses() + " -o " + Path(std::string(300, 'x')), HasSubstr("xxx"));
-  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --set optimizer.learning_rate=1e39",
-                HasSubstr("learning_rate"));
-  ExpectRefused("train " + Poses() + " --no-such-flag", HasSubstr("no-such-flag"));
-  ExpectRefused("train --resume -o " + Path("x"), HasSubstr("checkpoint"));
-  ExpectRefused("train " + Poses() + " --threads -1 -o " + Path("x"), HasSubstr("--threads"));
-  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --time-budget soon",
-                HasSubstr("--time-budget"));
-  ExpectRefused("train " + Poses() + " -o " + Path("x") + " --time-budget -5s",
-                HasSubstr("time_budget"));
-  ExpectRefused(
+  ExpectRejected("train " + Path("empty") + " -o " + Path("x"), HasSubstr("empty"));
+  ExpectRejected("train " + Poses() + " -o " + Path("x") + " --config fsat", HasSubstr("fsat"));
+  ExpectRejected("train " + Poses() + " -o " + Path("x") + " --set train.stps=1",
+                 HasSubstr("train.stps"));
+  ExpectRejected("train " + Poses() + " -o " + Path("x") + " --set train.steps=no",
+                 HasSubstr("train.steps"));
+  ExpectRejected("train " + Poses() + " -o /proc/nope", HasSubstr("/proc/nope"));
+  ExpectRejected("train " + Poses() + " -o " + Path(std::string(300, 'x')), HasSubstr("xxx"));
+  ExpectRejected("train " + Poses() + " -o " + Path("x") + " --set optimizer.learning_rate=1e39",
+                 HasSubstr("learning_rate"));
+  ExpectRejected("train " + Poses() + " --no-such-flag", HasSubstr("no-such-flag"));
+  ExpectRejected("train --resume -o " + Path("x"), HasSubstr("checkpoint"));
+  ExpectRejected("train " + Poses() + " --threads -1 -o " + Path("x"), HasSubstr("--threads"));
+  ExpectRejected("train " + Poses() + " -o " + Path("x") + " --time-budget soon",
+                 HasSubstr("--time-budget"));
+  ExpectRejected("train " + Poses() + " -o " + Path("x") + " --time-budget -5s",
+                 HasSubstr("time_budget"));
+  ExpectRejected(
       "train " + Poses() + " -o " + Path("x") + " --target-psnr 30 --set data.validation_images=0",
       HasSubstr("data.validation_images"));
-  ExpectRefused("train --resume --time-budget 5s -o " + Path("x"), HasSubstr("--time-budget"));
-  ExpectRefused("train --resume --effects +robust -o " + Path("x"), HasSubstr("--effects"));
+  ExpectRejected("train --resume --time-budget 5s -o " + Path("x"), HasSubstr("--time-budget"));
+  ExpectRejected("train --resume --effects +robust -o " + Path("x"), HasSubstr("--effects"));
   EXPECT_FALSE(fs::exists(Path("x")));
 }
 
-TEST_F(TrainCommand, ATimeBudgetIsKeptWhateverTheSteps) {
+TEST_F(TrainCommand, ATimeBudgetOverridesTheNumberOfSteps) {
   const auto result =
       RunNerf(Arguments("budget") + " --time-budget 0.1m --set train.steps=100000000");
   ASSERT_EQ(result.exit_status, 0) << result.output;
@@ -210,7 +208,7 @@ TEST_F(TrainCommand, ATimeBudgetIsKeptWhateverTheSteps) {
   EXPECT_EQ(config["train"]["time_budget"], 6);
 }
 
-TEST_F(TrainCommand, ATargetEndsTheRunAndSaysWhetherItWasReached) {
+TEST_F(TrainCommand, ATargetPsnrEndsTheRunAndIsReported) {
   const auto made =
       RunNerf("sample " + Path("more") + " --views 20 --width 32 --height 24 --samples 1");
   ASSERT_EQ(made.exit_status, 0) << made.output;
@@ -228,26 +226,27 @@ TEST_F(TrainCommand, ATargetEndsTheRunAndSaysWhetherItWasReached) {
   ASSERT_EQ(missed.exit_status, 0) << missed.output;
   EXPECT_THAT(missed.output,
               AllOf(HasSubstr("trained 60 steps"), HasSubstr("target of 99 dB not reached")));
-  const auto blind = RunNerf(Arguments("blind") + " --target-psnr 30");  // ten photographs
-  EXPECT_EQ(blind.exit_status, 2);
-  EXPECT_THAT(blind.output, HasSubstr("data.validation_images"));
+  // Ten photographs have no validation split.
+  const auto unvalidated = RunNerf(Arguments("unvalidated") + " --target-psnr 30");
+  EXPECT_EQ(unvalidated.exit_status, 2);
+  EXPECT_THAT(unvalidated.output, HasSubstr("data.validation_images"));
 }
 
-TEST_F(TrainCommand, TheDialSaysWhatItCostsAndLoses) {
-  ASSERT_EQ(RunNerf(Arguments("dial")).exit_status, 0);
-  const auto fast = RunNerf("render " + Path("dial") + " --quality 0.25");
+TEST_F(TrainCommand, RenderingQualityReportsItsCostAndError) {
+  ASSERT_EQ(RunNerf(Arguments("quality")).exit_status, 0);
+  const auto fast = RunNerf("render " + Path("quality") + " --quality 0.25");
   EXPECT_EQ(fast.exit_status, 0) << fast.output;
   EXPECT_THAT(fast.output, AllOf(HasSubstr("quality 0.25: about"), HasSubstr("dB from the exact")));
-  const auto exact = RunNerf("render " + Path("dial") + " --seconds-per-frame 1000");
+  const auto exact = RunNerf("render " + Path("quality") + " --seconds-per-frame 1000");
   EXPECT_THAT(exact.output, AllOf(HasSubstr("quality 1.00"), HasSubstr("the exact picture")));
-  const auto hasty = RunNerf("render " + Path("dial") + " --seconds-per-frame 1e-9");
-  EXPECT_EQ(hasty.exit_status, 0) << hasty.output;
-  EXPECT_THAT(hasty.output, AllOf(HasSubstr("quality 0.00"), HasSubstr("--downscale")));
-  ExpectRefused("render " + Path("dial") + " --seconds-per-frame 0",
-                HasSubstr("--seconds-per-frame"));
-  ExpectRefused("render " + Path("dial") + " --seconds-per-frame 1 --quality 1",
-                HasSubstr("--quality"));
-  const auto eval = RunNerf("eval --json " + Path("dial"));
+  const auto fastest = RunNerf("render " + Path("quality") + " --seconds-per-frame 1e-9");
+  EXPECT_EQ(fastest.exit_status, 0) << fastest.output;
+  EXPECT_THAT(fastest.output, AllOf(HasSubstr("quality 0.00"), HasSubstr("--downscale")));
+  ExpectRejected("render " + Path("quality") + " --seconds-per-frame 0",
+                 HasSubstr("--seconds-per-frame"));
+  ExpectRejected("render " + Path("quality") + " --seconds-per-frame 1 --quality 1",
+                 HasSubstr("--quality"));
+  const auto eval = RunNerf("eval --json " + Path("quality"));
   const auto json = nlohmann::json::parse(eval.output);
   for (const char* stage : {"sampling", "encoding", "networks", "compositing"}) {
     EXPECT_GT(json["stage_seconds_per_frame"][stage].get<double>(), 0) << stage;
@@ -257,13 +256,13 @@ TEST_F(TrainCommand, TheDialSaysWhatItCostsAndLoses) {
 
 TEST_F(TrainCommand, ABrokenCheckpointIsNamed) {
   folder_->Write("broken/checkpoint.nerf", "NERFCKPT but not much more");
-  ExpectRefused("eval " + Path("broken"), HasSubstr("broken/checkpoint.nerf"));
-  ExpectRefused("render " + Path("broken"), HasSubstr("broken/checkpoint.nerf"));
+  ExpectRejected("eval " + Path("broken"), HasSubstr("broken/checkpoint.nerf"));
+  ExpectRejected("render " + Path("broken"), HasSubstr("broken/checkpoint.nerf"));
 }
 
 TEST_F(TrainCommand, BrokenPosesAreNamed) {
   folder_->Write("bad/transforms.json", R"({"frames": [)");
-  ExpectRefused("train " + Path("bad") + " -o " + Path("x"), HasSubstr("bad/transforms.json"));
+  ExpectRejected("train " + Path("bad") + " -o " + Path("x"), HasSubstr("bad/transforms.json"));
   auto poses = nlohmann::json::parse(ReadWholeFile(Poses()));
   for (auto& frame : poses["frames"]) {
     frame["file_path"] = Path("sample/images/") +
@@ -275,7 +274,7 @@ TEST_F(TrainCommand, BrokenPosesAreNamed) {
     entry = -entry;
   }
   folder_->Write("mirrored/transforms.json", mirrored.dump());
-  ExpectRefused("train " + Path("mirrored") + " -o " + Path("x"), HasSubstr("frames[3]"));
+  ExpectRejected("train " + Path("mirrored") + " -o " + Path("x"), HasSubstr("frames[3]"));
 }
 
 TEST_F(TrainCommand, ATruncatedPhotographIsNamedAndSkipped) {

@@ -32,8 +32,8 @@ class CheckpointFile : public testing::Test {
     return "no error";
   }
 
-  // The bytes with the sum that they should have at their end.
-  void WriteWithRightSum(std::string bytes) {
+  // Writes the bytes with a valid checksum at the end.
+  void WriteWithValidChecksum(std::string bytes) {
     const auto crc = static_cast<std::uint32_t>(
         crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size() - 4));
     std::memcpy(bytes.data() + bytes.size() - 4, &crc, 4);
@@ -45,7 +45,7 @@ class CheckpointFile : public testing::Test {
   Checkpoint checkpoint_;
 };
 
-TEST_F(CheckpointFile, ComesBack) {
+TEST_F(CheckpointFile, RestoresWhatWasWritten) {
   const Checkpoint read = ReadCheckpoint(path_);
   EXPECT_EQ(read.meta.at("step"), 42);
   EXPECT_TRUE(
@@ -53,7 +53,7 @@ TEST_F(CheckpointFile, ComesBack) {
   EXPECT_EQ(read.tensors.at("count").item<int>(), 7);
 }
 
-TEST_F(CheckpointFile, CutShortAnywhereIsRefused) {
+TEST_F(CheckpointFile, TruncatedAnywhereIsRejected) {
   const std::string whole = ReadWholeFile(path_);
   for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 97) {
     std::ofstream(path_, std::ios::binary) << whole.substr(0, size);
@@ -74,14 +74,15 @@ TEST_F(CheckpointFile, AFlippedBitIsFound) {
 TEST_F(CheckpointFile, AnotherVersionIsNamed) {
   std::string bytes = ReadWholeFile(path_);
   bytes.replace(bytes.find("\"version\":\"3\""), 13, "\"version\":\"9\"");
-  WriteWithRightSum(bytes);
+  WriteWithValidChecksum(bytes);
   EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("version 9"));
   std::ofstream(path_, std::ios::binary) << "NERFCKPT and what followed it";
   EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("version 2"));
 }
 
-// What Python's safetensors checks too: a shape that fits its bytes, places inside the data.
-TEST_F(CheckpointFile, AHeaderThatDoesNotFitItsDataIsRefused) {
+// The same checks as in Python's safetensors: shapes match their bytes, offsets are inside the
+// data.
+TEST_F(CheckpointFile, AHeaderThatDoesNotMatchItsDataIsRejected) {
   const std::string whole = ReadWholeFile(path_);
   const std::string data = whole.substr(whole.size() - 60);  // 8 + 48 + 4 bytes
   for (const auto& [from, to] : {std::pair<std::string, std::string>{"[3,4]", "[4,4]"},
@@ -105,7 +106,7 @@ TEST_F(CheckpointFile, AHeaderThatDoesNotFitItsDataIsRefused) {
     size = header.size();
     std::string changed(reinterpret_cast<const char*>(&size), sizeof size);
     changed += header + data;
-    WriteWithRightSum(changed);
+    WriteWithValidChecksum(changed);
     EXPECT_THAT(ErrorOnRead(), testing::HasSubstr("invalid header")) << from << " " << to;
   }
 }

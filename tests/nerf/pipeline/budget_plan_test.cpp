@@ -7,7 +7,7 @@
 namespace nerf {
 namespace {
 
-TEST(BudgetPlan, FewStepsAreSpentOnSmallBatchesAndManyOnLargeTables) {
+TEST(BudgetPlan, ChoosesSmallBatchesForFewStepsAndLargeTablesForMany) {
   EXPECT_EQ(PlanFor(30, 0.05).preset, "fast");       // time for 600 steps
   EXPECT_EQ(PlanFor(124, 0.05).preset, "fast");      // 2480
   EXPECT_EQ(PlanFor(126, 0.05).preset, "balanced");  // 2520
@@ -16,7 +16,7 @@ TEST(BudgetPlan, FewStepsAreSpentOnSmallBatchesAndManyOnLargeTables) {
   EXPECT_EQ(PlanFor(36000, 0.05).preset, "accurate");
 }
 
-TEST(BudgetPlan, DependsOnStepsAloneNotOnTheMachine) {
+TEST(BudgetPlan, DependsOnlyOnTheNumberOfSteps) {
   for (const double speed : {0.001, 0.05, 2.0}) {
     EXPECT_EQ(PlanFor(2000 * speed, speed).preset, "fast") << speed;
     EXPECT_EQ(PlanFor(5000 * speed, speed).preset, "balanced") << speed;
@@ -24,13 +24,13 @@ TEST(BudgetPlan, DependsOnStepsAloneNotOnTheMachine) {
   }
 }
 
-TEST(BudgetPlan, ForecastsTheStepsOfTheChosenPreset) {
+TEST(BudgetPlan, PredictsTheStepsOfTheChosenPreset) {
   EXPECT_NEAR(PlanFor(250, 0.05).steps, 5000, 1e-6);
   EXPECT_GT(PlanFor(50, 0.05).steps, 1000);     // steps of `fast` are cheaper
-  EXPECT_LT(PlanFor(1000, 0.05).steps, 20000);  // those of `accurate` are dearer
+  EXPECT_LT(PlanFor(1000, 0.05).steps, 20000);  // steps of `accurate` take longer
 }
 
-TEST(BudgetPlan, NamesPresetsThatThereAre) {
+TEST(BudgetPlan, NamesExistingPresets) {
   for (const double seconds : {1.0, 200.0, 1e6}) {
     EXPECT_TRUE(BuiltInPresets().contains(PlanFor(seconds, 0.05).preset));
   }

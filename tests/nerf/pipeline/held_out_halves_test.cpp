@@ -22,7 +22,7 @@ namespace {
 
 using testing::ElementsAre;
 
-// Red tells the column of a pixel, green its row; every third pixel is not held.
+// Red is the column of a pixel, green its row; every third pixel is not held.
 View Photograph(const std::string& name) {
   View view;
   view.name = name;
@@ -53,7 +53,7 @@ std::vector<std::string> NamesOf(const std::vector<View>& views) {
   return names;
 }
 
-TEST(ColumnsOf, AViewHoldsItsPixelsAndPointsThere) {
+TEST(ColumnsOf, KeepsThePixelsAndPointsOfThePart) {
   const View whole = Photograph("a");
   const View right = ColumnsOf(whole, 4, 8);
   EXPECT_EQ(right.StoredCount() + ColumnsOf(whole, 0, 4).StoredCount(), whole.StoredCount());
@@ -68,7 +68,7 @@ TEST(ColumnsOf, AViewHoldsItsPixelsAndPointsThere) {
   EXPECT_EQ(right.depth_observations[0].distance, 2.5f);
 }
 
-TEST(HeldOutHalves, AreForValidationMeanwhileAndInTheirPlacesAgainAfterwards) {
+TEST(HeldOutHalves, AreForValidationAndAreRestoredAfterwards) {
   Dataset data = Photographs(40, 1);
   const std::vector<std::string> before = NamesOf(data.train);
   {
@@ -90,14 +90,14 @@ TEST(HeldOutHalves, AreForValidationMeanwhileAndInTheirPlacesAgainAfterwards) {
   for (const View& view : data.train) EXPECT_EQ(view.StoredCount(), Photograph("").StoredCount());
 }
 
-TEST(HeldOutHalves, AreOfAQuarterOfThePhotographsAtMost) {
+TEST(HeldOutHalves, AreOfAtMostAQuarterOfThePhotographs) {
   for (const auto& [train, count] : {std::pair(12, 3u), std::pair(7, 1u), std::pair(3, 0u)}) {
     Dataset data = Photographs(train, 0);
     EXPECT_EQ(HeldOutHalves(data).Count(), count) << train;
   }
 }
 
-TEST(HeldOutHalves, AreNotOfPhotographsOfWhichOneHalfIsMaskedOut) {
+TEST(HeldOutHalves, SkipPhotographsWithAMaskedHalf) {
   Dataset data = Photographs(8, 0);
   data.train[2] = ColumnsOf(data.train[2], 0, 4);
   data.train[2].camera = Photograph("").camera;
@@ -106,8 +106,8 @@ TEST(HeldOutHalves, AreNotOfPhotographsOfWhichOneHalfIsMaskedOut) {
   EXPECT_THAT(NamesOf(data.validation), ElementsAre("6"));
 }
 
-// A photograph half of which was trained on is looked at from where training has put it.
-TEST(HeldOutHalves, AreSeenFromRefinedPoses) {
+// The other half of a photograph that was trained on is rendered from its refined pose.
+TEST(HeldOutHalves, AreRenderedFromRefinedPoses) {
   test::SmallCapture capture = test::MakeSmallCapture(9, 24, 18);
   const HeldOutHalves held_out(capture.data);
   Config config = test::SmallConfig();
@@ -123,18 +123,18 @@ TEST(HeldOutHalves, AreSeenFromRefinedPoses) {
   }
   std::vector<View> halves = capture.data.validation;
   ASSERT_FALSE(halves.empty());
-  const double as_known = Validation(halves, 1).Psnr(model, false);
+  const double refined = Validation(halves, 1).Psnr(model, false);
   std::vector<View> as_given = halves;
   for (View& half : as_given) half.name = "unknown " + half.name;
-  EXPECT_GT(std::fabs(Validation(as_given, 1).Psnr(model, false) - as_known), 0.1);
+  EXPECT_GT(std::fabs(Validation(as_given, 1).Psnr(model, false) - refined), 0.1);
   for (View& half : halves) {
-    std::size_t place = 0;
-    while (capture.data.train[place].name != half.name) ++place;
-    half.normalized_from_camera = model.pose_refinement->Refined(static_cast<std::int64_t>(place),
+    std::size_t index = 0;
+    while (capture.data.train[index].name != half.name) ++index;
+    half.normalized_from_camera = model.pose_refinement->Refined(static_cast<std::int64_t>(index),
                                                                  half.normalized_from_camera);
     half.name = "unknown " + half.name;
   }
-  EXPECT_NEAR(Validation(halves, 1).Psnr(model, false), as_known, 2e-3);
+  EXPECT_NEAR(Validation(halves, 1).Psnr(model, false), refined, 2e-3);
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 namespace nerf {
 namespace {
 
-TEST(Crop, TakesTheBusiestPatch) {
+TEST(Crop, FindsThePatchWithTheMostDetail) {
   Image image(80, 60, 3);
   for (int y = 30; y < 40; ++y) {
     for (int x = 50; x < 60; ++x) image.At(x, y)[1] = (x + y) % 2 == 0 ? 1.0f : 0.0f;
   }
-  const Patch patch = BusiestPatch(image);
+  const Patch patch = MostDetailedPatch(image);
   EXPECT_EQ(patch.side, 15);
   EXPECT_LE(patch.left, 50);
   EXPECT_GE(patch.left + patch.side, 60);
@@ -21,10 +21,10 @@ TEST(Crop, TakesTheBusiestPatch) {
   EXPECT_EQ(crop.At(50 - patch.left, 30 - patch.top)[1], 1.0f);
 }
 
-TEST(Crop, WorksOnImagesOfAPixelAndOfOneColour) {
+TEST(Crop, WorksForOnePixelAndForOneColour) {
   const Image pixel(1, 1, 3);
-  EXPECT_EQ(Crop(pixel, BusiestPatch(pixel)).pixels.size(), 3u);
-  const Patch patch = BusiestPatch(Image(16, 9, 4));
+  EXPECT_EQ(Crop(pixel, MostDetailedPatch(pixel)).pixels.size(), 3u);
+  const Patch patch = MostDetailedPatch(Image(16, 9, 4));
   EXPECT_EQ(patch.side, 2);
 }
 

@@ -33,8 +33,8 @@ PreparedScene SmallSample(const test::ScratchFolder& folder, int views) {
   return scene;
 }
 
-// With nothing left of the budget every setting still gets its second.
-TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
+// When the budget is spent, each setting still gets a second.
+TEST(Study, MeasuresEverySettingAndContinuesWhereItStopped) {
   const test::ScratchFolder folder;
   const PreparedScene scene = SmallSample(folder, 10);
   StudyOptions options;
@@ -44,19 +44,19 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
 
   std::atomic<bool> stop = false;
   Study first(scene, options, out, IgnoreEvents);
-  std::vector<std::size_t> begun;
-  const auto note = [&](std::size_t number, const StudySetting&, double seconds) {
-    begun.push_back(number);
+  std::vector<std::size_t> started;
+  const auto on_begin = [&](std::size_t number, const StudySetting&, double seconds) {
+    started.push_back(number);
     EXPECT_GE(seconds, 1);
     if (number == 2) stop = true;
   };
-  EXPECT_FALSE(first.Run(stop, note));
-  EXPECT_EQ(begun, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_FALSE(first.Run(stop, on_begin));
+  EXPECT_EQ(started, (std::vector<std::size_t>{0, 1, 2}));
 
   Study again(scene, options, out, IgnoreEvents);
   EXPECT_EQ(again.Results()["settings"].size(), 2u);
-  EXPECT_TRUE(again.Run(never_stop, note));
-  EXPECT_EQ(begun[3], 2u);
+  EXPECT_TRUE(again.Run(never_stop, on_begin));
+  EXPECT_EQ(started[3], 2u);
 
   const auto json = nlohmann::json::parse(ReadWholeFile(out / "study.json"));
   ASSERT_EQ(json["settings"].size(), again.Settings());
@@ -65,7 +65,7 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   for (const auto& setting : json["settings"]) {
     EXPECT_GT(setting["steps"], 0);
     EXPECT_EQ(setting["qualities"].size(), 5u);
-    // What the study says of a run is what an evaluation of that run says.
+    // The study's scores are those of an evaluation of the run.
     const OpenedRun run = OpenRun(out / "runs" / setting["name"].get<std::string>());
     for (const auto& position : setting["qualities"]) {
       const Evaluation evaluation =
@@ -81,7 +81,7 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
   }
   EXPECT_GT(before, 0);
   EXPECT_GE(on_front, 1);
-  // Every setting can be looked at as any run.
+  // Each setting is an ordinary run.
   EXPECT_EQ(OpenRun(out / "runs" / "narrow").model->GetModel().config.field.hidden_width, 32);
 
   options.budget = 2;
@@ -89,7 +89,7 @@ TEST(Study, MeasuresEverySettingAndGoesOnWhereItStopped) {
               HasSubstr("budget_seconds"));
 }
 
-TEST(Study, NeedsPhotographsToMeasureOn) {
+TEST(Study, NeedsHeldOutPhotographs) {
   const test::ScratchFolder folder;
   EXPECT_THAT(test::InputErrorOf([&] {
                 Study(SmallSample(folder, 5), StudyOptions{}, folder.path(), IgnoreEvents);

@@ -1,4 +1,5 @@
-// Whole trainings of scenes that break others, each to a finite end of a stated quality.
+// Whole trainings on numerically hard scenes: each must end with finite values and a stated
+// quality.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,14 +34,14 @@ using test::never_stop;
 using test::PsnrOver;
 using test::Trained;
 
-// What a person says who knows that nothing stands before the cameras.
+// As set by a user who knows that nothing is close to the cameras.
 constexpr char kNothingNear[] = "march.near_distance=0.8";
 
 double HeldOutPsnr(const AnalyticCapture& capture, const Config& config) {
   return PsnrOver(Trained(config, capture.scene, capture.data), capture.held_out);
 }
 
-// How far a ray goes through the ball about the origin, and where it enters; 0 where it misses.
+// The part of a ray inside the ball around the origin; empty if it misses.
 struct Chord {
   float begin = 0, end = 0;
   float Length() const { return end - begin; }
@@ -52,20 +53,20 @@ Chord ThroughBall(const Vector3f& origin, const Vector3f& direction, float radiu
   return {std::max(0.0f, middle - std::sqrt(square)), middle + std::sqrt(square)};
 }
 
-// Surroundings that differ in each direction.
+// Surroundings that differ by direction.
 Vector3f Sky(const Vector3f& d) {
   return Vector3f(0.5f + 0.3f * d.x(), 0.5f + 0.3f * d.y(), 0.5f + 0.3f * d.z());
 }
 
 TEST(HardScene, ThinFogKeepsItsOpacity) {
-  // A ball of fog through which 95 % of the light comes.
+  // A ball of fog with a transmittance of 95 %.
   const auto fog = [](const Vector3f& origin, const Vector3f& direction) {
     const float tau = 0.05f * ThroughBall(origin, direction, 0.5f).Length();
     return Vector4f(1.0f, 0.6f, 0.2f, -std::expm1(-tau));
   };
   const AnalyticCapture capture(CameraRing(24, 1.5, 0.8), 24, 24, fog, /*has_alpha=*/true);
   const Model model = Trained(test::TinyConfig(1000), capture.scene, capture.data);
-  EXPECT_GT(PsnrOver(model, capture.held_out), 40);  // nothing at all would be 29 dB
+  EXPECT_GT(PsnrOver(model, capture.held_out), 40);  // an empty field would have 29 dB
 
   RayBatch through_the_middle;
   through_the_middle.Resize(1);
@@ -76,7 +77,7 @@ TEST(HardScene, ThinFogKeepsItsOpacity) {
   EXPECT_NEAR(opacity, -std::expm1(-0.05), 0.25 * 0.05);
 }
 
-TEST(HardScene, AMirrorIsSeenIfNotUnderstood) {
+TEST(HardScene, AMirrorIsReproduced) {
   const auto mirror = [](const Vector3f& origin, const Vector3f& direction) -> Vector4f {
     const Chord chord = ThroughBall(origin, direction, 0.5f);
     if (chord.Length() <= 0) return Sky(direction).homogeneous();
@@ -99,13 +100,13 @@ TEST(HardScene, ABlackSceneStaysBlackAndAWhiteOneWhite) {
   }
 }
 
-TEST(HardScene, NothingAtAllIsLearnedAsNothing) {
+TEST(HardScene, AnEmptySceneStaysEmpty) {
   const auto nothing = [](const Vector3f&, const Vector3f&) { return Vector4f(0, 0, 0, 0); };
   const AnalyticCapture capture(CameraRing(12, 1.5, 0.8), 16, 16, nothing, /*has_alpha=*/true);
   EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(200)), 40);
 }
 
-// A ball with stripes before a sky.
+// A striped ball in front of a sky.
 Vector4f StripedBall(const Vector3f& origin, const Vector3f& direction) {
   const Chord chord = ThroughBall(origin, direction, 0.5f);
   if (chord.Length() <= 0) return Sky(direction).homogeneous();
@@ -113,7 +114,7 @@ Vector4f StripedBall(const Vector3f& origin, const Vector3f& direction) {
   return Vector4f(0.5f + 0.4f * std::sin(8 * x.x()), 0.5f + 0.4f * std::sin(8 * x.z()), 0.3f, 1.0f);
 }
 
-TEST(HardScene, OneOverexposedPhotographDoesNotSpoilTheOthers) {
+TEST(HardScene, OneOverexposedPhotographDoesNotDegradeTheOthers) {
   AnalyticCapture capture(CameraRing(96, 1.5, 0.8), 24, 24, StripedBall);
   View& bright = capture.data.train[7];
   for (std::size_t i = 0; i < bright.rgba.size(); ++i) {
@@ -125,7 +126,7 @@ TEST(HardScene, OneOverexposedPhotographDoesNotSpoilTheOthers) {
 }
 
 TEST(HardScene, CamerasInsideMatterSeeItsColour) {
-  // The first cameras stand within the red ball, the others around it; it is cut out by alpha.
+  // The first cameras are inside the red ball, the others around it; alpha masks the surroundings.
   const auto red_ball = [](const Vector3f& origin, const Vector3f& direction) {
     const bool hits = ThroughBall(origin, direction, 0.5f).Length() > 0;
     return hits ? Vector4f(0.8f, 0.1f, 0.1f, 1.0f) : Vector4f(0, 0, 0, 0);
@@ -136,14 +137,14 @@ TEST(HardScene, CamerasInsideMatterSeeItsColour) {
   EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(400)), 20);
 }
 
-TEST(HardScene, TwoPhotographsAreLearnedByHeart) {
+TEST(HardScene, TwoPhotographsAreReproduced) {
   const AnalyticCapture capture(CameraRing(2, 1.5, 0.1), 32, 32, StripedBall, false, 0);
   ASSERT_EQ(capture.data.train.size(), 2u);
   const Model model = Trained(test::TinyConfig(400), capture.scene, capture.data);
   EXPECT_GT(PsnrOver(model, capture.data.train), 25);
 }
 
-TEST(HardScene, TenThousandPhotographsOfAFewPixels) {
+TEST(HardScene, TenThousandTinyPhotographsTrain) {
   const AnalyticCapture capture(CameraRing(10000, 1.5, 0.8), 8, 8, StripedBall, false, 100);
   EXPECT_EQ(capture.data.train.size(), 9900u);
   EXPECT_GT(HeldOutPsnr(capture, test::TinyConfig(300)), 22);
@@ -156,7 +157,7 @@ TEST(HardScene, OnePhotographOfOnePixelTrains) {
   EXPECT_GT(PsnrOver(model, capture.data.train), 20);
 }
 
-// The units of the input cancel before training begins: what is left is the rounding of poses.
+// Normalisation cancels the units of the input, except for the rounding of poses.
 TEST(HardScene, AMillimetreAndTenKilometresTrainAlike) {
   const auto psnr_at = [](double scale) {
     test::SmallCapture small = test::MakeSmallCapture(24, 32, 24);
@@ -180,16 +181,16 @@ TEST(HardScene, AMillimetreAndTenKilometresTrainAlike) {
   EXPECT_NEAR(psnr_at(0.25e4), usual, 0.1);
 }
 
-// With steps far too long the field is thrown about: it must come to a finite end, or say where it
-// broke; and what is on disk can be rendered either way.
-// While it lives, one thread works: on tiny batches more would mostly wait for each other.
+// Uses a single thread during its lifetime, which is faster for tiny batches.
 struct OneThread {
   const int before = NumThreads();
   OneThread() { SetNumThreads(1); }
   ~OneThread() { SetNumThreads(before); }
 };
 
-TEST(HardScene, AHundredThousandRecklessStepsEndWithAReasonAtWorst) {
+// With far too large learning rates, training must end with finite values or report where it
+// diverged, and the last checkpoint must be renderable in both cases.
+TEST(HardScene, AHundredThousandStepsWithHugeLearningRatesEndOrReportAReason) {
   const AnalyticCapture capture(CameraRing(4, 1.5, 0.8), 4, 4, StripedBall, true, 0);
   const OneThread one;
   for (const char* rate : {"optimizer.learning_rate=1", "optimizer.learning_rate=1e6"}) {
@@ -216,8 +217,8 @@ TEST(HardScene, AHundredThousandRecklessStepsEndWithAReasonAtWorst) {
   }
 }
 
-// A photograph that holds what is no number, past every reader that would have refused it.
-TEST(HardScene, AValueThatIsNoNumberNamesStepRayAndStageAndKeepsTheLastCheckpoint) {
+// A NaN in a photograph in memory, which readers would have rejected.
+TEST(HardScene, ANaNIsReportedWithStepRayAndStageAndTheLastCheckpointStays) {
   AnalyticCapture capture(CameraRing(8, 1.5, 0.8), 16, 16, StripedBall);
   const Config config =
       test::TinyConfig(400, {"train.checkpoint_every=1", "train.max_rays_per_batch=8"});

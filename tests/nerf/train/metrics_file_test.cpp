@@ -10,7 +10,7 @@
 namespace nerf {
 namespace {
 
-TEST(MetricsFile, KeepsWhatStandsBeforeTheCheckpointAndItsCurve) {
+TEST(MetricsFile, KeepsTheLinesAndTheCurveUpToTheCheckpoint) {
   const test::ScratchFolder folder;
   const auto path = folder.path() / "metrics.jsonl";
   std::ofstream(path) << R"({"step": 50, "seconds": 1.0, "validation_psnr": 20.0})"
@@ -19,7 +19,7 @@ TEST(MetricsFile, KeepsWhatStandsBeforeTheCheckpointAndItsCurve) {
                       << "\n"
                       << R"({"step": 150, "seconds": 3.0, "validation_psnr": 22.0})"
                       << "\n"
-                      << "{\"step\": 160, \"sec";  // the power went
+                      << "{\"step\": 160, \"sec";  // power failure
   MetricsFile metrics(path, 100);
   EXPECT_EQ(metrics.Curve().Last(), 21);
   metrics.Append({{"step", 150}, {"seconds", 2.5}, {"validation_psnr", 23.0}});
@@ -29,7 +29,7 @@ TEST(MetricsFile, KeepsWhatStandsBeforeTheCheckpointAndItsCurve) {
   EXPECT_EQ(text.find("22.0"), std::string::npos);
 }
 
-TEST(MetricsFile, StrangersLinesDoNotBreakIt) {
+TEST(MetricsFile, IgnoresInvalidLines) {
   const test::ScratchFolder folder;
   const auto path = folder.path() / "metrics.jsonl";
   std::ofstream(path) << "[]\n{}\n{\"step\": \"x\"}\n"

@@ -14,7 +14,7 @@ OptimizerOptions Options() {
   return options;
 }
 
-TEST(Adam, GivesTheNumbersOfLibTorchsOwn) {
+TEST(Adam, EqualsLibTorchsAdam) {
   torch::manual_seed(1);
   torch::Tensor ours = torch::randn({30, 7}).requires_grad_();
   torch::Tensor theirs = ours.detach().clone().requires_grad_();
@@ -32,11 +32,11 @@ TEST(Adam, GivesTheNumbersOfLibTorchsOwn) {
     adam.step();
     reference.step();
     EXPECT_TRUE(torch::allclose(ours, theirs, 1e-4, 1e-6)) << "step " << step;
-    EXPECT_EQ(ours.grad().abs().max().item<float>(), 0.0f) << "made ready for the next step";
+    EXPECT_EQ(ours.grad().abs().max().item<float>(), 0.0f) << "gradients must be reset";
   }
 }
 
-// An entry that only some steps touch moves as if the others had not been.
+// An entry without a gradient in some steps is updated as if these steps had not happened.
 TEST(Adam, EachEntryOfATableCountsItsOwnSteps) {
   for (const int features : {1, 2, 4, 8}) {
     torch::manual_seed(1);
@@ -44,17 +44,17 @@ TEST(Adam, EachEntryOfATableCountsItsOwnSteps) {
     Adam adam({{"hash_encoding.table", table}}, Options());
     OptimizerOptions options = Options();
     options.weight_decay = 0;
-    torch::Tensor often = torch::ones({features}).requires_grad_();
-    torch::Tensor seldom = often.detach().clone().requires_grad_();
-    Adam of_often({{"w", often}}, options), of_seldom({{"w", seldom}}, options);
+    torch::Tensor always = torch::ones({features}).requires_grad_();
+    torch::Tensor sometimes = always.detach().clone().requires_grad_();
+    Adam of_always({{"w", always}}, options), of_sometimes({{"w", sometimes}}, options);
     for (int step = 0; step < 30; ++step) {
       torch::Tensor gradient = torch::randn({3, features});
       gradient[2].zero_();
-      often.mutable_grad() = gradient[0].clone();
-      of_often.step();
+      always.mutable_grad() = gradient[0].clone();
+      of_always.step();
       if (step >= 10 && step % 3 == 0) {
-        seldom.mutable_grad() = gradient[1].clone();
-        of_seldom.step();
+        sometimes.mutable_grad() = gradient[1].clone();
+        of_sometimes.step();
       } else {
         gradient[1].zero_();
       }
@@ -62,13 +62,13 @@ TEST(Adam, EachEntryOfATableCountsItsOwnSteps) {
       adam.step();
       EXPECT_EQ(gradient.abs().max().item<float>(), 0.0f);
     }
-    EXPECT_TRUE(torch::allclose(table[0], often, 1e-5, 1e-6));
-    EXPECT_TRUE(torch::allclose(table[1], seldom, 1e-5, 1e-6));
-    EXPECT_TRUE(torch::equal(table[2], torch::ones({features}))) << "nothing touched it";
+    EXPECT_TRUE(torch::allclose(table[0], always, 1e-5, 1e-6));
+    EXPECT_TRUE(torch::allclose(table[1], sometimes, 1e-5, 1e-6));
+    EXPECT_TRUE(torch::equal(table[2], torch::ones({features}))) << "it never had a gradient";
   }
 }
 
-TEST(Adam, AnEntryWithOneFeatureUntouchedIsTouched) {
+TEST(Adam, UpdatesAnEntryIfAnyFeatureHasAGradient) {
   torch::Tensor table = torch::ones({1, 4}).requires_grad_();
   Adam adam({{"table", table}}, Options());
   table.mutable_grad() = torch::tensor({{0.0f, 0.0f, 0.0f, 1.0f}});
@@ -77,7 +77,7 @@ TEST(Adam, AnEntryWithOneFeatureUntouchedIsTouched) {
   EXPECT_LT(table[0][3].item<float>(), 1.0f);
 }
 
-TEST(Adam, GoesOnFromItsSavedState) {
+TEST(Adam, ResumesFromItsSavedState) {
   const auto gradient = [](int step) { return torch::full({5}, std::cos(step)); };
   const auto train = [&](Adam& adam, torch::Tensor& x, int from, int to) {
     for (int step = from; step < to; ++step) {
@@ -85,19 +85,19 @@ TEST(Adam, GoesOnFromItsSavedState) {
       adam.step();
     }
   };
-  torch::Tensor straight = torch::ones({5}).requires_grad_();
-  Adam one({{"w", straight}}, Options());
-  train(one, straight, 0, 20);
+  torch::Tensor uninterrupted = torch::ones({5}).requires_grad_();
+  Adam one({{"w", uninterrupted}}, Options());
+  train(one, uninterrupted, 0, 20);
 
-  torch::Tensor broken = torch::ones({5}).requires_grad_();
-  Adam first({{"w", broken}}, Options());
-  train(first, broken, 0, 10);
+  torch::Tensor resumed = torch::ones({5}).requires_grad_();
+  Adam first({{"w", resumed}}, Options());
+  train(first, resumed, 0, 10);
   std::map<std::string, torch::Tensor> saved;
   first.AddTo(saved);
-  Adam second({{"w", broken}}, Options());
+  Adam second({{"w", resumed}}, Options());
   second.LoadFrom(saved);
-  train(second, broken, 10, 20);
-  EXPECT_TRUE(torch::equal(straight, broken));
+  train(second, resumed, 10, 20);
+  EXPECT_TRUE(torch::equal(uninterrupted, resumed));
 }
 
 TEST(Adam, NamesTheParameterWhoseGradientIsNotFinite) {

@@ -17,7 +17,7 @@
 namespace nerf {
 namespace {
 
-// With a proposal, a background, exposures and refined poses, so that every module is copied.
+// A configuration with every module: proposal network, background, exposure, pose refinement.
 Config EveryModule(std::int64_t steps) {
   return test::TinyConfig(steps, {"march.sampler=proposal", "effects.background={}",
                                   "effects.exposure={}", "effects.pose_refinement={}"});
@@ -28,9 +28,9 @@ ViewRequest FirstView(const test::SmallCapture& small, double quality = 1) {
   return {posed.cameras[0], posed.images[0].world_from_camera, quality};
 }
 
-// Four threads render while a fifth trains. Each picture is bit for bit that of the step that its
-// snapshot names, as a second training of the same seed has it: no picture mixes two steps.
-TEST(ModelSnapshot, RendersFromFourThreadsDuringTrainingOneStepAtATime) {
+// Four threads render while a fifth trains. Each picture is bit for bit that of its snapshot's step
+// in a second training with the same seed: no picture mixes two steps.
+TEST(ModelSnapshot, RendersConsistentlyFromFourThreadsDuringTraining) {
   SetNumThreads(2);
   const test::SmallCapture small = test::MakeSmallCapture(10, 24, 18);
   const Config config = EveryModule(60);
@@ -39,9 +39,9 @@ TEST(ModelSnapshot, RendersFromFourThreadsDuringTrainingOneStepAtATime) {
   std::mutex mutex;
   {
     Trainer trainer(config, small.scene, small.data, run.path());
-    std::atomic<bool> over = false;
-    const auto look = [&] {
-      while (!over) {
+    std::atomic<bool> finished = false;
+    const auto view_snapshots = [&] {
+      while (!finished) {
         const auto snapshot = trainer.Snapshots().Latest();
         if (!snapshot) continue;
         const RenderedView view = snapshot->Render(FirstView(small));
@@ -50,9 +50,9 @@ TEST(ModelSnapshot, RendersFromFourThreadsDuringTrainingOneStepAtATime) {
       }
     };
     std::vector<std::jthread> viewers;
-    for (int i = 0; i < 4; ++i) viewers.emplace_back(look);
+    for (int i = 0; i < 4; ++i) viewers.emplace_back(view_snapshots);
     EXPECT_TRUE(trainer.Run(test::never_stop).finished);
-    over = true;
+    finished = true;
   }
   ASSERT_GE(pictures.size(), 2u);
   Trainer again(config, small.scene, small.data, {});
@@ -67,7 +67,7 @@ TEST(ModelSnapshot, RendersFromFourThreadsDuringTrainingOneStepAtATime) {
   SetNumThreads(AvailableCores());
 }
 
-TEST(ModelSnapshot, StaysAsItIsWhileTheModelLearns) {
+TEST(ModelSnapshot, DoesNotChangeDuringTraining) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 24, 18);
   Trainer trainer(EveryModule(40), small.scene, small.data, {});
   trainer.TakeSteps(20);
@@ -82,7 +82,7 @@ TEST(ModelSnapshot, StaysAsItIsWhileTheModelLearns) {
             picture);
 }
 
-TEST(ModelSnapshot, OfARunIsThatOfTheTrainingThatWroteIt) {
+TEST(ModelSnapshot, OfACheckpointEqualsThatOfTheTraining) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 24, 18);
   const test::ScratchFolder run;
   Trainer trainer(EveryModule(20), small.scene, small.data, run.path());
@@ -92,14 +92,14 @@ TEST(ModelSnapshot, OfARunIsThatOfTheTrainingThatWroteIt) {
             ModelSnapshot::Copy(trainer.GetModel(), 20)->Render(FirstView(small)).rgb.pixels);
 }
 
-TEST(SnapshotSlot, CopiesNothingUnlessSomebodyLooks) {
+TEST(SnapshotSlot, NeedsASnapshotOnlyAfterARequest) {
   SnapshotSlot slot;
-  EXPECT_FALSE(slot.IsWanted());
+  EXPECT_FALSE(slot.IsRequested());
   EXPECT_EQ(slot.Latest(), nullptr);
-  EXPECT_TRUE(slot.IsWanted());
+  EXPECT_TRUE(slot.IsRequested());
   const test::SmallCapture small = test::MakeSmallCapture(10, 24, 18);
   slot.Publish(ModelSnapshot::Copy(MakeModel(EveryModule(1), small.scene), 7));
-  EXPECT_FALSE(slot.IsWanted());
+  EXPECT_FALSE(slot.IsRequested());
   ASSERT_NE(slot.Latest(), nullptr);
   EXPECT_EQ(slot.Latest()->Step(), 7);
 }

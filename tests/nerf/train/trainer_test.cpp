@@ -47,39 +47,39 @@ TEST(Trainer, TheSameSeedAndThreadsGiveTheSameBits) {
   ExpectSameTensors(ReadRunCheckpoint(a.path()), ReadRunCheckpoint(b.path()));
 }
 
-TEST(Trainer, AResumedRunEqualsAnUnbrokenOneBitForBit) {
+TEST(Trainer, AResumedRunEqualsAnUninterruptedOneBitForBit) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
-  test::ScratchFolder straight, broken;
-  Trainer(FewSteps(100), small.scene, small.data, straight.path()).Run(never_stop);
+  test::ScratchFolder uninterrupted, interrupted;
+  Trainer(FewSteps(100), small.scene, small.data, uninterrupted.path()).Run(never_stop);
 
   // Stopped by request some steps after its first checkpoint.
   std::atomic<bool> stop = false;
   std::thread watcher([&] {
-    while (!std::filesystem::exists(CheckpointPath(broken.path()))) std::this_thread::yield();
+    while (!std::filesystem::exists(CheckpointPath(interrupted.path()))) std::this_thread::yield();
     stop = true;
   });
   const TrainSummary stopped =
-      Trainer(FewSteps(100), small.scene, small.data, broken.path()).Run(stop);
+      Trainer(FewSteps(100), small.scene, small.data, interrupted.path()).Run(stop);
   watcher.join();
   ASSERT_FALSE(stopped.finished);
   ASSERT_GE(stopped.step, 20);
 
-  Trainer resumed(ReadRunCheckpoint(broken.path()), small.data, broken.path());
+  Trainer resumed(ReadRunCheckpoint(interrupted.path()), small.data, interrupted.path());
   EXPECT_TRUE(resumed.Run(never_stop).finished);
-  ExpectSameTensors(ReadRunCheckpoint(straight.path()), ReadRunCheckpoint(broken.path()));
+  ExpectSameTensors(ReadRunCheckpoint(uninterrupted.path()), ReadRunCheckpoint(interrupted.path()));
 }
 
-TEST(Trainer, ATimeBudgetEndsTheRunWithTheLearningRateAtItsLast) {
+TEST(Trainer, ATimeBudgetEndsTheRunAtTheFinalLearningRate) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
   test::ScratchFolder run;
-  Config config = FewSteps(1);  // steps do not count
+  Config config = FewSteps(1);  // ignored with a time budget
   config.train.time_budget = 5;
   config.train.validate_every = 10;
   Trainer trainer(config, small.scene, small.data, run.path(), 3.0);
   const TrainSummary summary = trainer.Run(never_stop);
   EXPECT_TRUE(summary.finished);
   EXPECT_GT(summary.step, 1);
-  // 3 of the 5 seconds were gone: no more than 2 are left. How many less, a busy machine decides.
+  // 3 of the 5 seconds were already spent. How much of the rest is used depends on the machine.
   EXPECT_LE(summary.training_seconds, 2.0);
   std::ifstream metrics(MetricsPath(run.path()));
   nlohmann::json last;
@@ -91,7 +91,7 @@ TEST(Trainer, ATimeBudgetEndsTheRunWithTheLearningRateAtItsLast) {
   EXPECT_EQ(ReadRunCheckpoint(run.path()).meta["step"], summary.step);
 }
 
-TEST(Trainer, ABudgetThatIsUsedUpIsNotTrainedAgainOnResume) {
+TEST(Trainer, ResumingWithAnExhaustedBudgetTakesNoSteps) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
   test::ScratchFolder run;
   Config config = FewSteps(1);
@@ -104,7 +104,7 @@ TEST(Trainer, ABudgetThatIsUsedUpIsNotTrainedAgainOnResume) {
   EXPECT_EQ(summary.step, checkpoint.meta["step"]);
 }
 
-// PSNR of a picture that is the mean colour of a view everywhere.
+// PSNR of a constant picture with the mean colour of a view.
 double PsnrOfMeanColor(const View& view) {
   const auto pixels = static_cast<double>(view.rgba.size() / 4);
   std::array<double, 3> mean{}, squares{};
@@ -119,14 +119,14 @@ double PsnrOfMeanColor(const View& view) {
   return -10 * std::log10(error);
 }
 
-TEST(Trainer, EndsWhereTheValidationReachesItsTarget) {
+TEST(Trainer, EndsWhenValidationReachesTheTarget) {
   test::SmallCapture small = test::MakeSmallCapture(36, 32, 24);
   small.data.validation.push_back(small.data.train.back());
   small.data.train.pop_back();
   test::ScratchFolder run;
   Config config = FewSteps(1000);
   config.train.validate_every = 10;
-  // More than a field can have that has learned no more than a colour.
+  // More than a constant colour can reach.
   config.train.target_psnr = PsnrOfMeanColor(small.data.validation.front()) + 1;
   std::vector<double> psnrs;
   const TrainSummary summary = Trainer(config, small.scene, small.data, run.path())
@@ -146,8 +146,8 @@ TEST(Trainer, EndsWhereTheValidationReachesItsTarget) {
   EXPECT_EQ(ReadRunCheckpoint(run.path()).meta["step"], summary.step);
 }
 
-// Each stage has a timer of its own: where one is counted twice, they sum to more than the step.
-TEST(Trainer, StagesThatAreTimedAreNoMoreThanTheirSteps) {
+// Each stage has its own timer. If one was counted twice, they would sum to more than the step.
+TEST(Trainer, TimedStagesSumToAtMostTheTimeOfTheSteps) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
   for (const SamplerKind sampler : {SamplerKind::kProposal, SamplerKind::kOccupancy}) {
     test::ScratchFolder run;
@@ -175,17 +175,17 @@ TEST(Trainer, StagesThatAreTimedAreNoMoreThanTheirSteps) {
   }
 }
 
-TEST(Trainer, TakesNoMoreStepsThanThereAreAndTimesThoseThatItTook) {
+TEST(Trainer, TakesNoMoreThanTheRemainingStepsAndTimesThem) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
   Trainer trainer(FewSteps(5), small.scene, small.data, {});
   const Stopwatch watch;
   const double mean = trainer.TakeSteps(1000);
   EXPECT_GT(mean, 0);
-  EXPECT_GT(5 * mean, 0.5 * watch.Seconds());  // not divided by the 995 that were not made
+  EXPECT_GT(5 * mean, 0.5 * watch.Seconds());  // not divided by 1000
   EXPECT_EQ(trainer.TakeSteps(1), 0);
 }
 
-TEST(Trainer, LearnsAViewThatItNeverSaw) {
+TEST(Trainer, GeneralisesToHeldOutViews) {
   const test::SmallCapture small = test::MakeSmallCapture(72, 64, 48);
   test::ScratchFolder run;
   Trainer trainer(test::SmallConfig(), small.scene, small.data, run.path());
@@ -204,11 +204,11 @@ TEST(Trainer, LearnsAViewThatItNeverSaw) {
     psnr += Psnr(small.capture.views[i].photo, view.rgb);
     ++views;
   }
-  EXPECT_GT(psnr / views, 18.0);  // the mean colour alone gives 12
+  EXPECT_GT(psnr / views, 18.0);  // the mean colour has 12 dB
   RecordProperty("held_out_psnr", std::to_string(psnr / views));
 }
 
-TEST(Trainer, WritesALineOfMetricsAValidation) {
+TEST(Trainer, WritesOneLineOfMetricsPerValidation) {
   const test::SmallCapture small = test::MakeSmallCapture(10, 32, 24);
   test::ScratchFolder run;
   Config config = FewSteps(30);

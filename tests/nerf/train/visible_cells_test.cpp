@@ -24,8 +24,8 @@ View ViewFrom(const Camera& camera, const Eigen::Isometry3d& normalized_from_cam
   return view;
 }
 
-// One camera at the origin that looks along +z with 40 degrees across.
-View Ahead() {
+// A camera at the origin that looks along +z, with a field of view of 40 degrees.
+View Forward() {
   return ViewFrom(PinholeFromFov(64, 64, 40 * M_PI / 180), Eigen::Isometry3d::Identity());
 }
 
@@ -33,9 +33,9 @@ bool IsKept(const OccupancyGrid& grid, const Eigen::Vector3f& x_in_normalized) {
   return grid.Occupied(UnitCubeFromContracted(Contract(x_in_normalized)));
 }
 
-// A point that a pixel shows must stay: what is culled can never be learned again. Up to where
-// cells lie wholly in contracted space; of those that its border cuts, the ones with their middle
-// outside are emptied.
+// Culled cells can never become occupied, so every point that a pixel shows must be kept.
+// True of cells that are inside contracted space; of those that its border cuts, the ones with
+// their centre outside are culled.
 TEST(VisibleCells, EveryPointInAPictureIsKept) {
   std::vector<View> views;
   for (const Eigen::Isometry3d& pose : test::CameraRing(5, 2.0, 0.7)) {
@@ -58,24 +58,24 @@ TEST(VisibleCells, EveryPointInAPictureIsKept) {
   }
 }
 
-TEST(VisibleCells, WhatNoViewSeesIsEmptied) {
+TEST(VisibleCells, CellsOutsideAllFrustumsAreCulled) {
   OccupancyGrid grid = Grid();
-  KeepVisibleCells(grid, {Ahead()});
+  KeepVisibleCells(grid, {Forward()});
   for (const float distance : {0.6f, 1.0f, 3.0f}) {
     EXPECT_TRUE(IsKept(grid, {0, 0, distance})) << distance;
     EXPECT_FALSE(IsKept(grid, {0, 0, -distance})) << distance;  // behind the camera
-    EXPECT_FALSE(IsKept(grid, {distance, 0, 0})) << distance;   // 90 degrees beside its axis
+    EXPECT_FALSE(IsKept(grid, {distance, 0, 0})) << distance;   // 90 degrees off its axis
   }
-  // About the share of the sphere that a view of 40 degrees has, and its margin.
+  // About the share of the sphere inside a field of view of 40 degrees, with a margin.
   EXPECT_LT(grid.OccupiedFraction(), 0.25);
 }
 
-TEST(VisibleCells, AreThoseOfAnyView) {
+TEST(VisibleCells, AreTheUnionOverViews) {
   OccupancyGrid one = Grid(), two = Grid();
   Eigen::Isometry3d backwards = Eigen::Isometry3d::Identity();
   backwards.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  KeepVisibleCells(one, {Ahead()});
-  KeepVisibleCells(two, {Ahead(), ViewFrom(Ahead().camera, backwards)});
+  KeepVisibleCells(one, {Forward()});
+  KeepVisibleCells(two, {Forward(), ViewFrom(Forward().camera, backwards)});
   EXPECT_TRUE(IsKept(two, {0, 0, 1}));
   EXPECT_TRUE(IsKept(two, {0, 0, -1}));
   EXPECT_GT(two.OccupiedFraction(), one.OccupiedFraction());
@@ -84,9 +84,9 @@ TEST(VisibleCells, AreThoseOfAnyView) {
   }
 }
 
-// Of a lens whose border cannot be inverted nothing is known, so nothing is culled by its angle.
-TEST(VisibleCells, StayWhereALensDoesNotReachItsBorder) {
-  View view = Ahead();
+// Where the lens model cannot be inverted at the border, nothing is culled by the angle.
+TEST(VisibleCells, AreKeptWhereTheBorderIsOutsideTheFieldOfView) {
+  View view = Forward();
   view.camera.model = CameraModel::kSimpleRadial;
   view.camera.params = {40, 32, 32, -0.9};
   ASSERT_FALSE(DirectionFromPixel(view.camera, Eigen::Vector2d(0, 0)));

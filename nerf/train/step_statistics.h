@@ -6,22 +6,22 @@
 
 namespace nerf {
 
-// What one step took, in seconds.
+// The time of one step, seconds.
 struct StepSeconds {
   double all = 0;
-  double pixels = 0;     // drawing them, and what their errors teach the next draw
-  double occupancy = 0;  // fresh densities for the grid
+  double pixels = 0;     // sampling pixels and updating the error map
+  double occupancy = 0;  // updating the occupancy grid
   double optimizer = 0;
 };
 
-// Totals of the steps between two lines of metrics.jsonl.
-class Tally {
+// Statistics of the steps between two lines of metrics.jsonl.
+class StepStatistics {
  public:
   void Add(const StepResult& result, std::int64_t rays, const StepSeconds& seconds);
 
   std::int64_t Steps() const { return steps_; }
-  // Means and rates, and "stage_seconds", whose parts sum to what the steps took. At least one
-  // step must be in it.
+  // Means and rates, and "stage_seconds", which sum to the time of the steps. Needs at least one
+  // step.
   nlohmann::json Metrics() const;
 
  private:
@@ -31,7 +31,7 @@ class Tally {
   StageSeconds stages_;
 };
 
-// Decibels of a mean squared error of colours in [0, 1].
-double PsnrOf(double mean_squared_error);
+// PSNR, dB, of colours in [0, 1].
+double PsnrFromMse(double mean_squared_error);
 
 }  // namespace nerf

@@ -1,4 +1,4 @@
-#include "nerf/train/tally.h"
+#include "nerf/train/step_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 
 namespace nerf {
 
-double PsnrOf(double mean_squared_error) { return -10.0 * std::log10(mean_squared_error); }
+double PsnrFromMse(double mean_squared_error) { return -10.0 * std::log10(mean_squared_error); }
 
-void Tally::Add(const StepResult& result, std::int64_t rays, const StepSeconds& seconds) {
+void StepStatistics::Add(const StepResult& result, std::int64_t rays, const StepSeconds& seconds) {
   loss_ += result.loss;
   squared_error_ += result.squared_error;
   ++steps_;
@@ -23,12 +23,12 @@ void Tally::Add(const StepResult& result, std::int64_t rays, const StepSeconds& 
   stages_.Add(result.seconds);
 }
 
-nlohmann::json Tally::Metrics() const {
+nlohmann::json StepStatistics::Metrics() const {
   const auto steps = static_cast<double>(steps_);
   const auto rays = static_cast<double>(rays_);
-  const double known = stages_.Sum() + seconds_.pixels + seconds_.occupancy + seconds_.optimizer;
+  const double timed = stages_.Sum() + seconds_.pixels + seconds_.occupancy + seconds_.optimizer;
   return {{"loss", loss_ / steps},
-          {"train_psnr", PsnrOf(squared_error_ / steps)},
+          {"train_psnr", PsnrFromMse(squared_error_ / steps)},
           {"rays_per_second", rays / seconds_.all},
           {"samples_per_second", static_cast<double>(shaded_) / seconds_.all},
           {"marched_per_ray", static_cast<double>(marched_) / rays},
@@ -43,7 +43,7 @@ nlohmann::json Tally::Metrics() const {
             {"networks", stages_.networks},
             {"compositing", stages_.compositing},
             {"optimizer", seconds_.optimizer},
-            {"other", std::max(0.0, seconds_.all - known)}}},
+            {"other", std::max(0.0, seconds_.all - timed)}}},
           {"peak_megabytes", PeakMegabytes()}};
 }
 
