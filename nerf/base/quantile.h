@@ -6,8 +6,7 @@
 
 namespace nerf {
 
-// Order statistics of unsorted numbers, in linear time. The values are reordered. They must not be
-// NaN.
+// Order statistics of unsorted numbers, in linear time. The values are reordered; NaN is invalid.
 
 // The value with a given rank; rank 0 is the smallest. `rank` must be below the number of values.
 template <std::ranges::random_access_range Values>

@@ -13,8 +13,7 @@ struct BallOutline {
   double radius = 0;       // pixels
 };
 
-// The outline of a ball from its mask: the centre of mass, and the radius of a disc of the same
-// area.
+// The outline of a ball from its mask: the centre of mass, and the radius of a disc of equal area.
 //   mask   3 channels; the ball is where the first is above 0.5
 //   name   of the file of the mask, for messages
 // Throws InputError if the mask is empty, less than 10 pixels wide, or not a disc.

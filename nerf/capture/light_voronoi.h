@@ -29,9 +29,8 @@ class LightVoronoi {
 
   // The integral of the radiance of an environment over each cell, W / m^2. The height of the cells
   // must be a multiple of the height of the map.
-  //   degrees  rotation of the environment about y, counter-clockwise as seen from above, rounded
-  //   to
-  //            whole pixels
+  //   degrees  rotation of the environment about y, counter-clockwise as seen from above; rounded
+  //            to whole pixels
   std::vector<Color> Integrate(const EnvironmentMap& map, double degrees = 0) const;
 
   // The fraction of the luminous power of an environment that comes from directions without a cell,

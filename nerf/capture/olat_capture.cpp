@@ -156,8 +156,8 @@ void CheckSizes(OlatCapture& capture) {
 
 void FindLights(OlatCapture& capture, const fs::path& folder, const OlatOptions& options) {
   const auto found = Near(folder, kLightsName);
-  const bool from_ball = options.lights == LightSource::kChromeBall ||
-                         (options.lights == LightSource::kAuto && !found);
+  const bool from_ball = options.lights == LightCalibration::kChromeBall ||
+                         (options.lights == LightCalibration::kAuto && !found);
   if (from_ball) {
     if (!capture.chrome) {
       throw InputError(
@@ -169,7 +169,7 @@ void FindLights(OlatCapture& capture, const fs::path& folder, const OlatOptions&
     capture.lights_source = capture.chrome->string();
     return;
   }
-  const fs::path file = options.lights == LightSource::kAuto ? *found : options.light_file;
+  const fs::path file = options.lights == LightCalibration::kAuto ? *found : options.light_file;
   capture.lights = ReadLights(file);
   capture.lights_source = file.string();
   if (capture.lights.size() != capture.images.size()) {

@@ -24,14 +24,14 @@ struct OlatCapture {
 };
 
 // Where the directions of the lights come from.
-enum class LightSource {
+enum class LightCalibration {
   kAuto,        // lights.txt if there is one, else the chrome ball
   kChromeBall,  // highlights on a chrome ball
   kFile,        // OlatOptions::light_file
 };
 
 struct OlatOptions {
-  LightSource lights = LightSource::kAuto;
+  LightCalibration lights = LightCalibration::kAuto;
   std::filesystem::path light_file;  // see light_file.h
   InputEncoding encoding = InputEncoding::kAuto;
 };

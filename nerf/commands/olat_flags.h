@@ -13,9 +13,9 @@ inline void AddLightsOption(CLI::App& command, OlatOptions& options) {
       .add_option_function<std::string>(
           "--lights",
           [&options](const std::string& value) {
-            options.lights = value == "auto"     ? LightSource::kAuto
-                             : value == "chrome" ? LightSource::kChromeBall
-                                                 : LightSource::kFile;
+            options.lights = value == "auto"     ? LightCalibration::kAuto
+                             : value == "chrome" ? LightCalibration::kChromeBall
+                                                 : LightCalibration::kFile;
             options.light_file = value;
           },
           "directions of the lights: a file; chrome: from the highlights on a chrome ball; auto: "

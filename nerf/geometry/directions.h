@@ -8,8 +8,7 @@
 
 namespace nerf {
 
-// Sampling of directions from uniform numbers in [0,1)^2, and frames of normals. All vectors are
-// unit.
+// Sampling of directions from uniform numbers in [0,1)^2, and frames of normals. Unit vectors only.
 
 // Uniform over the sphere; density 1 / (4 pi).
 inline Eigen::Vector3d UniformOnSphere(const Eigen::Array2d& u) {

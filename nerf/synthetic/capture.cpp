@@ -5,10 +5,8 @@
 #include <mutex>
 #include <utility>
 
-#include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/image/srgb.h"
-#include "nerf/scene/camera.h"
 #include "nerf/synthetic/camera_rings.h"
 #include "nerf/synthetic/hash.h"
 #include "nerf/synthetic/ray_tracer.h"

@@ -32,8 +32,7 @@ struct LightStageOptions {
 //   third_ball  a BRDF in place of gold
 SurfaceScene LightStageSubject(std::shared_ptr<const Brdf> third_ball = nullptr);
 
-// A camera in front of the table, looking slightly down. World: x right, y up, z towards the
-// camera.
+// A camera in front of the table that looks slightly down. World: x right, y up, z to the camera.
 struct StageCamera {
   Camera camera;
   Eigen::Isometry3d world_from_camera;

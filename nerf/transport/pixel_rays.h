@@ -9,7 +9,7 @@ namespace nerf {
 
 // The ray from a camera through a point of its picture.
 //   pixel  centres of pixels lie at +0.5
-// Throws InputError where the lens has no ray there.
+// Throws InputError if the lens has no ray there.
 Ray RayThroughPixel(const Camera& camera, const Eigen::Isometry3d& world_from_camera,
                     const Eigen::Vector2d& pixel);
 

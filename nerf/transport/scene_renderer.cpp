@@ -8,7 +8,6 @@
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/progress.h"
-#include "nerf/scene/camera.h"
 #include "nerf/transport/pixel_rays.h"
 
 namespace nerf {

@@ -17,8 +17,7 @@ Eigen::Vector3f At(const Image& image, int x, int y) {
 }
 
 TEST(Turbo, MatchesItsTable) {
-  // Entries 64, 128 and 192 of the table by Mikhailov; the error of the polynomial is below a
-  // tenth.
+  // Entries 64, 128 and 192 of the table by Mikhailov; the polynomial is within a tenth.
   EXPECT_LT((Turbo(64 / 255.0f) - Eigen::Vector3f(0.15844f, 0.73551f, 0.92305f)).norm(), 0.1f);
   EXPECT_LT((Turbo(128 / 255.0f) - Eigen::Vector3f(0.64362f, 0.98999f, 0.23356f)).norm(), 0.1f);
   EXPECT_LT((Turbo(192 / 255.0f) - Eigen::Vector3f(0.99297f, 0.50160f, 0.13530f)).norm(), 0.1f);
