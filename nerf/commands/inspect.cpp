@@ -71,8 +71,7 @@ void RunInspect(const InspectArguments& arguments) {
     inspection = InspectPhotographs(posed);
     spdlog::warn(
         "{}: photographs without poses, which most verdicts need; find them with nerf poses, or "
-        "run "
-        "nerf train, which finds them and inspects again",
+        "run nerf train, which finds them and inspects again",
         arguments.input);
   }
   if (!inspection.warning.empty()) spdlog::warn("{}", inspection.warning);
@@ -101,8 +100,8 @@ void AddInspectCommand(CLI::App& app) {
   command->add_flag("--json", arguments->json, "print JSON instead of the table");
   command->add_option(
       "--picture", arguments->picture,
-      "FILE.png to write: the exposure of each photograph, and the colour residuals of points by "
-      "viewing angle, which grow where surfaces are glossy");
+      "write a plot to FILE.png: the exposure of each photograph, and the colour change of points "
+      "with the viewing angle, which increases for glossy surfaces");
   command->footer(
       "Examples:\n"
       "  nerf inspect photos/fox/colmap --picture fox.png\n"

@@ -54,8 +54,9 @@ void RunPoses(const PosesArguments& arguments) {
   const fs::path transforms = output / "transforms.json";
   const fs::path workspace = output / "colmap";
   if (fs::exists(transforms) && !fs::exists(workspace / "steps.json")) {
-    throw InputError("{}: exists already, but not from nerf poses; give another folder with -o",
-                     transforms.string());
+    throw InputError(
+        "{}: already exists and was not written by nerf poses; choose another folder with -o",
+        transforms.string());
   }
   sfm::ColmapReport report;
   const PosedImages posed =

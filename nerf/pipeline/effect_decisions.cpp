@@ -18,8 +18,8 @@ bool IsDecision(const Verdict& verdict) {
 EffectDecisions::EffectDecisions(const Inspection& inspection, std::set<std::string> requested)
     : verdicts_(inspection.verdicts), requested_(std::move(requested)) {
   for (const Verdict& verdict : verdicts_) {
-    if (!IsDecision(verdict) || requested_.contains(verdict.effect) || !verdict.IsConclusive())
-      continue;
+    if (!IsDecision(verdict) || requested_.contains(verdict.effect)) continue;
+    if (!verdict.IsConclusive()) continue;
     assignments_.push_back(verdict.assignment);
   }
 }

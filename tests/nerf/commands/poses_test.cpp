@@ -19,20 +19,20 @@ using test::WritePhoto;
 using testing::AllOf;
 using testing::HasSubstr;
 
-struct Said {
+struct Result {
   int status = -1;
   std::string text;  // standard output and standard error
 };
 
-Said RunPoses(const std::string& arguments) {
-  Said said;
+Result RunPoses(const std::string& arguments) {
+  Result result;
   FILE* pipe = popen((std::string(NERF_PROGRAM) + " poses " + arguments + " 2>&1").c_str(), "r");
   std::array<char, 4096> buffer{};
   while (const std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe)) {
-    said.text.append(buffer.data(), count);
+    result.text.append(buffer.data(), count);
   }
-  said.status = WEXITSTATUS(pclose(pipe));
-  return said;
+  result.status = WEXITSTATUS(pclose(pipe));
+  return result;
 }
 
 class PosesCommand : public testing::Test {
@@ -52,11 +52,11 @@ class PosesCommand : public testing::Test {
 TEST_F(PosesCommand, WritesPosesThatCanBeReadBackAndPrintsATable) {
   photos_.Write("broken.png", "x");
   fake_.Set("models", "0 4\n");
-  const Said said = RunPoses(Arguments());
-  EXPECT_EQ(said.status, 0) << said.text;
-  EXPECT_THAT(said.text, AllOf(HasSubstr("registered                4"), HasSubstr("e.png"),
-                               HasSubstr("broken.png"), HasSubstr("0.50 pixels"),
-                               HasSubstr("seconds, matches")));
+  const Result result = RunPoses(Arguments());
+  EXPECT_EQ(result.status, 0) << result.text;
+  EXPECT_THAT(result.text, AllOf(HasSubstr("registered                4"), HasSubstr("e.png"),
+                                 HasSubstr("broken.png"), HasSubstr("0.50 pixels"),
+                                 HasSubstr("seconds, matches")));
   const PosedImages posed = sfm::ReadTransformsJson(out_.path() / "transforms.json");
   ASSERT_EQ(posed.images.size(), 4u);
   EXPECT_TRUE(fs::equivalent(posed.images[0].path, photos_.path() / "a.png"));
@@ -65,12 +65,12 @@ TEST_F(PosesCommand, WritesPosesThatCanBeReadBackAndPrintsATable) {
   EXPECT_TRUE(fs::exists(out_.path() / "colmap/sparse/0/images.txt"));
 }
 
-TEST_F(PosesCommand, DoesNotOverwritePosesThatItDidNotMake) {
+TEST_F(PosesCommand, DoesNotOverwriteForeignPoses) {
   fake_.Set("models", "0 5\n");
   out_.Write("transforms.json", "precious");
-  const Said said = RunPoses(Arguments());
-  EXPECT_EQ(said.status, 2);
-  EXPECT_THAT(said.text, HasSubstr("transforms.json: exists already"));
+  const Result result = RunPoses(Arguments());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.text, HasSubstr("transforms.json: already exists"));
   EXPECT_EQ(test::FileBytes(out_.path() / "transforms.json"), "precious");
 }
 
@@ -78,13 +78,13 @@ TEST_F(PosesCommand, BadInputEndsWithStatus2AndOneLine) {
   for (const std::string& arguments :
        {std::string("/absent/folder"),
         photos_.path().string() + " --matcher all -o " + out_.path().string()}) {
-    const Said said = RunPoses(arguments);
-    EXPECT_EQ(said.status, 2) << said.text;
-    EXPECT_EQ(std::count(said.text.begin(), said.text.end(), '\n'), 1) << said.text;
+    const Result result = RunPoses(arguments);
+    EXPECT_EQ(result.status, 2) << result.text;
+    EXPECT_EQ(std::count(result.text.begin(), result.text.end(), '\n'), 1) << result.text;
   }
 }
 
-TEST_F(PosesCommand, TooFewRegisteredLeavesNoTransforms) {
+TEST_F(PosesCommand, WritesNoTransformsIfTooFewImagesAreRegistered) {
   EXPECT_EQ(RunPoses(Arguments()).status, 2);
   EXPECT_FALSE(fs::exists(out_.path() / "transforms.json"));
 }

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(SelfcheckCommand, PrintsALinePerCaseAndPassesHere) {
+TEST(SelfcheckCommand, PrintsALinePerCaseAndPasses) {
   const auto result = test::RunNerf("selfcheck");
   EXPECT_EQ(result.exit_status, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("ThinFogKeepsItsOpacity"));
@@ -36,7 +36,7 @@ TEST(SelfcheckCommand, JsonHasARowForEachLevel) {
   EXPECT_GE(levels, 1);
 }
 
-TEST(SelfcheckCommand, RefusesAnUnknownFlag) {
+TEST(SelfcheckCommand, RejectsAnUnknownFlag) {
   EXPECT_EQ(test::RunNerf("selfcheck --quick").exit_status, 2);
 }
 

@@ -33,9 +33,9 @@ bool IsKept(const OccupancyGrid& grid, const Eigen::Vector3f& x_in_normalized) {
   return grid.Occupied(UnitCubeFromContracted(Contract(x_in_normalized)));
 }
 
-// Culled cells can never become occupied, so every point that a pixel shows must be kept.
-// True of cells that are inside contracted space; of those that its border cuts, the ones with
-// their centre outside are culled.
+// Culled cells can never become occupied, so every point that a pixel shows must be kept. Tested up
+// to where cells are entirely in contracted space: of cells that its border cuts, those with their
+// centre outside are emptied.
 TEST(VisibleCells, EveryPointInAPictureIsKept) {
   std::vector<View> views;
   for (const Eigen::Isometry3d& pose : test::CameraRing(5, 2.0, 0.7)) {
@@ -80,7 +80,9 @@ TEST(VisibleCells, AreTheUnionOverViews) {
   EXPECT_TRUE(IsKept(two, {0, 0, -1}));
   EXPECT_GT(two.OccupiedFraction(), one.OccupiedFraction());
   for (std::size_t cell = 0; cell < one.Density().size(); ++cell) {
-    if (one.Density()[cell] >= 0) EXPECT_GE(two.Density()[cell], 0) << cell;
+    if (one.Density()[cell] >= 0) {
+      EXPECT_GE(two.Density()[cell], 0) << cell;
+    }
   }
 }
 
