@@ -66,7 +66,7 @@ void TrainingDisplay::Show(const CaptureInspected& event) {
     // Most effects are undecided: print a line instead of the table.
     std::vector<std::string> facts;
     for (const Verdict& v : verdicts) {
-      const bool is_unbounded = v.effect == kUnbounded.name;
+      const bool is_unbounded = v.effect == kUnboundedEffect.name;
       if (v.on && !is_unbounded) facts.push_back(v.effect);
       if (v.decided && !v.on && is_unbounded) facts.push_back("not " + v.effect);
     }

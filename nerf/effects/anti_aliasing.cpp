@@ -69,15 +69,15 @@ Verdict JudgeAntiAliasing(const PosedImages& posed) {
       ratios.insert(ratios.end(), point.track.size(), ratio);
     }
   }
-  if (ratios.empty()) return Undecided(kAntiAliasing.name, "no tracks of sparse points");
+  if (ratios.empty()) return Undecided(kAntiAliasingEffect.name, "no tracks of sparse points");
   const double median = Quantile(ratios, 0.5);
-  return Measured(kAntiAliasing.name, median, kScaleRatio,
+  return Measured(kAntiAliasingEffect.name, median, kScaleRatio,
                   fmt::format("the scales at which photographs show a point differ by a factor of "
                               "{:.1f} (threshold {:.1f})",
                               median, kScaleRatio));
 }
 
-const EffectDescriptor kAntiAliasing = {
+const EffectDescriptor kAntiAliasingEffect = {
     .name = "anti_aliasing",
     .old_name = "footprint",
     .help = "a pixel averages a patch that grows with the distance: finer levels get less weight",
@@ -85,7 +85,7 @@ const EffectDescriptor kAntiAliasing = {
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgeAntiAliasing(*e.posed)
-                               : Undecided(kAntiAliasing.name, e.unknown_because);
+                               : Undecided(kAntiAliasingEffect.name, e.unknown_because);
         },
 };
 

@@ -44,6 +44,6 @@ std::vector<float> AntiAliasingWeights(const kernels::HashGridLayout& layout,
 // point differ. Undecided where no point has a track.
 Verdict JudgeAntiAliasing(const PosedImages& posed);
 
-extern const EffectDescriptor kAntiAliasing;
+extern const EffectDescriptor kAntiAliasingEffect;
 
 }  // namespace nerf

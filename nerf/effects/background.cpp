@@ -6,7 +6,7 @@ namespace nerf {
 
 Verdict JudgeBackground(const PointShares& shares) {
   const Verdict verdict = Measured(
-      kBackground.name, shares.far, kFarAway,
+      kBackgroundEffect.name, shares.far, kFarAway,
       fmt::format("{:.1f} % of the points are more than {:.0f} radii away (threshold {:.1f} %){}",
                   100 * shares.far, kFarRadius, 100 * kFarAway,
                   shares.far >= kFarAway && !IsBeforeBackground(shares)
@@ -14,10 +14,10 @@ Verdict JudgeBackground(const PointShares& shares) {
                       : ""));
   // A decision together with `unbounded`, which is a fact: both are equally conclusive.
   if (!verdict.on) return verdict;
-  return Fact(kBackground.name, IsBeforeBackground(shares), shares.far, verdict.evidence);
+  return Fact(kBackgroundEffect.name, IsBeforeBackground(shares), shares.far, verdict.evidence);
 }
 
-const EffectDescriptor kBackground = {
+const EffectDescriptor kBackgroundEffect = {
     .name = "background",
     .old_name = nullptr,
     .help = "a learned colour for each direction behind everything, such as a sky",
@@ -26,10 +26,11 @@ const EffectDescriptor kBackground = {
     .judge =
         [](const CaptureEvidence& e) {
           if (e.HasAlpha()) {
-            return Fact(kBackground.name, false, 0, "photographs with alpha have no background");
+            return Fact(kBackgroundEffect.name, false, 0,
+                        "photographs with alpha have no background");
           }
           return e.HasTracks() ? JudgeBackground(e.shares)
-                               : Undecided(kBackground.name, e.unknown_because);
+                               : Undecided(kBackgroundEffect.name, e.unknown_because);
         },
 };
 

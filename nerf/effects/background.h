@@ -22,6 +22,6 @@ struct BackgroundOptions {
 // On where there are distant points and hardly any between them and the near ones.
 Verdict JudgeBackground(const PointShares& shares);
 
-extern const EffectDescriptor kBackground;
+extern const EffectDescriptor kBackgroundEffect;
 
 }  // namespace nerf

@@ -78,17 +78,18 @@ Verdict JudgeDepthSupervision(const PosedImages& posed,
     }
     photographs.push_back(count);
   }
-  if (photographs.empty()) return Undecided(kDepthSupervision.name, "all points are far away");
+  if (photographs.empty())
+    return Undecided(kDepthSupervisionEffect.name, "all points are far away");
   const double median = Quantile(photographs, 0.5);
   Verdict verdict =
-      Fact(kDepthSupervision.name, median < kFewPhotographs, median,
+      Fact(kDepthSupervisionEffect.name, median < kFewPhotographs, median,
            fmt::format("a point is in view of {:.0f} photographs (threshold: fewer than {:.0f})",
                        median, kFewPhotographs));
   verdict.threshold = kFewPhotographs;
   return verdict;
 }
 
-const EffectDescriptor kDepthSupervision = {
+const EffectDescriptor kDepthSupervisionEffect = {
     .name = "depth_supervision",
     .old_name = "depth",
     .help = "for few photographs: rays through sparse points must end there",
@@ -96,7 +97,7 @@ const EffectDescriptor kDepthSupervision = {
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgeDepthSupervision(*e.posed, e.frame)
-                               : Undecided(kDepthSupervision.name, e.unknown_because);
+                               : Undecided(kDepthSupervisionEffect.name, e.unknown_because);
         },
 };
 

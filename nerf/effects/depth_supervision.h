@@ -59,6 +59,6 @@ std::vector<float> DepthCosts(std::span<const float> t, std::span<const std::int
 Verdict JudgeDepthSupervision(const PosedImages& posed,
                               const SceneNormalization& normalized_from_world);
 
-extern const EffectDescriptor kDepthSupervision;
+extern const EffectDescriptor kDepthSupervisionEffect;
 
 }  // namespace nerf

@@ -32,15 +32,15 @@ struct EffectsOptions {
   // Calls visit(descriptor, block) for each effect. This is the only list of all effects.
   template <class Self, class Visitor>
   static void VisitEffects(Self& effects, Visitor&& visit) {
-    visit(kMasks, effects.masks);
-    visit(kUnbounded, effects.unbounded);
-    visit(kViewDependence, effects.view_dependence);
-    visit(kBackground, effects.background);
-    visit(kExposure, effects.exposure);
-    visit(kRobust, effects.robust);
-    visit(kDepthSupervision, effects.depth_supervision);
-    visit(kPoseRefinement, effects.pose_refinement);
-    visit(kAntiAliasing, effects.anti_aliasing);
+    visit(kMasksEffect, effects.masks);
+    visit(kUnboundedEffect, effects.unbounded);
+    visit(kViewDependenceEffect, effects.view_dependence);
+    visit(kBackgroundEffect, effects.background);
+    visit(kExposureEffect, effects.exposure);
+    visit(kRobustEffect, effects.robust);
+    visit(kDepthSupervisionEffect, effects.depth_supervision);
+    visit(kPoseRefinementEffect, effects.pose_refinement);
+    visit(kAntiAliasingEffect, effects.anti_aliasing);
   }
 
   template <class Self, class Visitor>

@@ -19,13 +19,13 @@ Verdict JudgeExposure(const std::vector<double>& stops, const std::string& sourc
     largest = std::max(largest, std::fabs(s));
   }
   const double spread = std::sqrt(squares / static_cast<double>(stops.size()));
-  return Measured(kExposure.name, spread, kStops,
+  return Measured(kExposureEffect.name, spread, kStops,
                   fmt::format("photographs differ by {:.2f} stops ({:.2f} at most) {} (threshold "
                               "{:.2f})",
                               spread, largest, source, kStops));
 }
 
-const EffectDescriptor kExposure = {
+const EffectDescriptor kExposureEffect = {
     .name = "exposure",
     .old_name = nullptr,
     .help = "a gain for each photograph and channel: exposure and white balance that differ",
@@ -33,7 +33,7 @@ const EffectDescriptor kExposure = {
     .parameters = "exposure.",
     .judge =
         [](const CaptureEvidence& e) {
-          return e.stops.empty() ? Undecided(kExposure.name, e.unknown_because)
+          return e.stops.empty() ? Undecided(kExposureEffect.name, e.unknown_because)
                                  : JudgeExposure(e.stops, e.stops_source);
         },
     // Exposures often differ, and the gain can be ten decibels.

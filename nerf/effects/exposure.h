@@ -19,6 +19,6 @@ struct ExposureOptions {
 //   source  where they were measured, as a phrase of the evidence
 Verdict JudgeExposure(const std::vector<double>& stops, const std::string& source);
 
-extern const EffectDescriptor kExposure;
+extern const EffectDescriptor kExposureEffect;
 
 }  // namespace nerf

@@ -36,7 +36,7 @@ Inspection InspectionOf(const CaptureEvidence& evidence) {
 
 // The frame in which the ball that bounds the scene is the unit ball.
 SceneNormalization BoundedFrame(const CaptureEvidence& evidence) {
-  const Verdict unbounded = kUnbounded.judge(evidence);
+  const Verdict unbounded = kUnboundedEffect.judge(evidence);
   if (unbounded.on) return evidence.frame;
   return NormalizedTo(evidence.hull ? *evidence.hull : evidence.shares.near, evidence.frame);
 }

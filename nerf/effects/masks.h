@@ -34,6 +34,6 @@ inline std::optional<MaskMeaning> MeaningOf(const std::optional<MaskOptions>& ma
   return masks ? std::optional(masks->meaning) : std::nullopt;
 }
 
-extern const EffectDescriptor kMasks;
+extern const EffectDescriptor kMasksEffect;
 
 }  // namespace nerf

@@ -24,15 +24,15 @@ Verdict JudgePoseRefinement(const PosedImages& posed) {
       if (pixel) pixels.push_back((*pixel - seen.pixel).norm());
     }
   }
-  if (pixels.empty()) return Undecided(kPoseRefinement.name, "no tracks of sparse points");
+  if (pixels.empty()) return Undecided(kPoseRefinementEffect.name, "no tracks of sparse points");
   const double median = Quantile(pixels, 0.5);
-  return Measured(kPoseRefinement.name, median, kWrongPixels,
+  return Measured(kPoseRefinementEffect.name, median, kWrongPixels,
                   fmt::format("the median reprojection error of points is {:.2f} pixels (threshold "
                               "{:.2f})",
                               median, kWrongPixels));
 }
 
-const EffectDescriptor kPoseRefinement = {
+const EffectDescriptor kPoseRefinementEffect = {
     .name = "pose_refinement",
     .old_name = "poses",
     .help = "poses and focal lengths that are a little wrong, refined with the field",
@@ -41,7 +41,7 @@ const EffectDescriptor kPoseRefinement = {
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgePoseRefinement(*e.posed)
-                               : Undecided(kPoseRefinement.name, e.unknown_because);
+                               : Undecided(kPoseRefinementEffect.name, e.unknown_because);
         },
     .trial_steps = 400,  // poses have to converge before quality improves
     .measured_on_halves = true,

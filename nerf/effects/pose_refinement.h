@@ -31,6 +31,6 @@ struct CameraPlace {
 // structure from motion, more where poses are wrong. Undecided where no point has a track.
 Verdict JudgePoseRefinement(const PosedImages& posed);
 
-extern const EffectDescriptor kPoseRefinement;
+extern const EffectDescriptor kPoseRefinementEffect;
 
 }  // namespace nerf

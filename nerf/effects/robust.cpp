@@ -36,13 +36,13 @@ Verdict JudgeRobust(const TrackColors& colors, const PhotographFit& fit) {
   }
   const double share = static_cast<double>(outliers) /
                        static_cast<double>(std::max<std::size_t>(1, colors.seen.size() + outliers));
-  return Measured(kRobust.name, share, kOutlierShare,
+  return Measured(kRobustEffect.name, share, kOutlierShare,
                   fmt::format("in {:.1f} % of the places where a point should be visible, "
                               "something else is (threshold {:.1f} %)",
                               100 * share, 100 * kOutlierShare));
 }
 
-const EffectDescriptor kRobust = {
+const EffectDescriptor kRobustEffect = {
     .name = "robust",
     .old_name = nullptr,
     .help = "a loss in which large errors have little weight: passers-by, moving shadows",
@@ -50,7 +50,7 @@ const EffectDescriptor kRobust = {
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgeRobust(e.colors, e.fit)
-                               : Undecided(kRobust.name, e.unknown_because);
+                               : Undecided(kRobustEffect.name, e.unknown_because);
         },
 };
 

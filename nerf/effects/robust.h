@@ -39,6 +39,6 @@ T RobustWeight(const T& loss, const RobustOptions& options) {
 // Judges by the share of places where a point should be visible but something else is.
 Verdict JudgeRobust(const TrackColors& colors, const PhotographFit& fit);
 
-extern const EffectDescriptor kRobust;
+extern const EffectDescriptor kRobustEffect;
 
 }  // namespace nerf

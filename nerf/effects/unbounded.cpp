@@ -6,33 +6,35 @@ namespace nerf {
 
 Verdict JudgeUnbounded(const std::optional<Ball>& hull) {
   if (!hull) {
-    return Fact(kUnbounded.name, true, 0, "the visual hull by alpha may extend beyond 2 radii");
+    return Fact(kUnboundedEffect.name, true, 0,
+                "the visual hull by alpha may extend beyond 2 radii");
   }
   return Fact(
-      kUnbounded.name, hull->radius > kNearRadius, hull->radius,
+      kUnboundedEffect.name, hull->radius > kNearRadius, hull->radius,
       fmt::format("the visual hull by alpha is in a ball of {:.2f} radii (threshold {:.1f})",
                   hull->radius, kNearRadius));
 }
 
 Verdict JudgeUnbounded(const PointShares& shares, bool may_learn_background) {
   const bool bounded = may_learn_background && IsBeforeBackground(shares);
-  return Fact(kUnbounded.name, !bounded, shares.between,
+  return Fact(kUnboundedEffect.name, !bounded, shares.between,
               fmt::format("{:.1f} % of the points are from {:.1f} to {:.0f} radii away{}",
                           100 * shares.between, kNearRadius, kFarRadius,
                           bounded ? ": nothing in front of the background" : ""));
 }
 
-const EffectDescriptor kUnbounded = {
+const EffectDescriptor kUnboundedEffect = {
     .name = "unbounded",
     .old_name = nullptr,
     .help = "matter at any distance, in contracted space; without it rays end at the unit ball",
     .hook = "march",
     .judge =
         [](const CaptureEvidence& e) {
-          if (!e.has_poses) return Undecided(kUnbounded.name, e.unknown_because);
+          if (!e.has_poses) return Undecided(kUnboundedEffect.name, e.unknown_because);
           if (e.HasAlpha()) return JudgeUnbounded(e.hull);
           if (e.has_points) return JudgeUnbounded(e.shares, e.may_learn_background);
-          return Fact(kUnbounded.name, true, 0, "photographs without alpha show surroundings");
+          return Fact(kUnboundedEffect.name, true, 0,
+                      "photographs without alpha show surroundings");
         },
 };
 

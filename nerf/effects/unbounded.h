@@ -21,6 +21,6 @@ Verdict JudgeUnbounded(const std::optional<Ball>& hull);
 //   may_learn_background  if false, contracted space has to represent distant points
 Verdict JudgeUnbounded(const PointShares& shares, bool may_learn_background);
 
-extern const EffectDescriptor kUnbounded;
+extern const EffectDescriptor kUnboundedEffect;
 
 }  // namespace nerf

@@ -35,17 +35,17 @@ Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit)
     if (change > kTexturelessVariation + Quantile(spread.contrast, 0.5)) ++changing;
   }
   if (judged < kFewestPoints) {
-    return Undecided(kViewDependence.name,
+    return Undecided(kViewDependenceEffect.name,
                      fmt::format("only {} points have {} or more sightings", judged, kFewestViews));
   }
   const double share = static_cast<double>(changing) / static_cast<double>(judged);
-  return Measured(kViewDependence.name, share, kViewDependentShare,
+  return Measured(kViewDependenceEffect.name, share, kViewDependentShare,
                   fmt::format("the colour of {:.1f} % of the points changes with the view by more "
                               "than their texture explains (threshold {:.0f} %)",
                               100 * share, 100 * kViewDependentShare));
 }
 
-const EffectDescriptor kViewDependence = {
+const EffectDescriptor kViewDependenceEffect = {
     .name = "view_dependence",
     .old_name = "view",
     .help = "colour that depends on the viewing direction: gloss and mirrors",
@@ -53,7 +53,7 @@ const EffectDescriptor kViewDependence = {
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgeViewDependence(e.colors, e.fit)
-                               : Undecided(kViewDependence.name, e.unknown_because);
+                               : Undecided(kViewDependenceEffect.name, e.unknown_because);
         },
 };
 

@@ -24,6 +24,6 @@ constexpr ColorModel ColorModelOf(bool view_dependence) {
 // explains (an error of a pixel, another slant). Undecided where too few points have long tracks.
 Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit);
 
-extern const EffectDescriptor kViewDependence;
+extern const EffectDescriptor kViewDependenceEffect;
 
 }  // namespace nerf

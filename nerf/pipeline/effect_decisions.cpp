@@ -40,7 +40,7 @@ void EffectDecisions::DisableBackgroundForAlpha(const PipelineListener& listener
     assignments_.push_back(verdict.assignment);
     listener(VerdictReached{verdict});
   };
-  const auto background = find(kBackground), unbounded = find(kUnbounded);
+  const auto background = find(kBackgroundEffect), unbounded = find(kUnboundedEffect);
   const auto end = verdicts_.end();
   if (background == end || !background->decided ||
       (!background->on && background->IsConclusive())) {

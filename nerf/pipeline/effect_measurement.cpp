@@ -31,7 +31,7 @@ PosedImages ReadWithHeldOutAsValidation(const std::filesystem::path& poses) {
 // Masks with the meaning `empty` define the scene, so there is no result without them.
 bool IsMeasurable(const EffectsOptions& effects, const EffectDescriptor& effect) {
   const bool defines_scene =
-      &effect == &kMasks && effects.masks && effects.masks->meaning == MaskMeaning::kEmpty;
+      &effect == &kMasksEffect && effects.masks && effects.masks->meaning == MaskMeaning::kEmpty;
   return Simulates(effects, effect) && !defines_scene;
 }
 
@@ -51,7 +51,7 @@ std::vector<EffectMeasurement> MeasureEffects(
   // Without masks, training includes the masked pixels; validation is on the same pixels.
   const auto train_without = [&](const EffectDescriptor& effect) {
     const Config without = WithEffect(model.config, effect, false);
-    if (&effect != &kMasks) return train(without, data);
+    if (&effect != &kMasksEffect) return train(without, data);
     Dataset unmasked = LoadPhotographs(posed, without, normalized_from_world, folder, listener);
     unmasked.validation = data.validation;
     return train(without, unmasked);

@@ -95,7 +95,7 @@ void InspectScene(const Config& config, const std::set<std::string>& requested,
   const Stopwatch watch;
   const auto photographs = static_cast<std::int64_t>(scene.posed.images.size());
   const bool may_learn_background =
-      !requested.contains(kBackground.name) || config.effects.background;
+      !requested.contains(kBackgroundEffect.name) || config.effects.background;
   scene.inspection = Inspect(
       scene.posed,
       [&](int read) {

@@ -111,7 +111,7 @@ void TrainingSession::DecideEffects() {
   facts_.exposure_stops = scene_.StopsOf(data_.train);
   if (facts_.has_alpha) decisions_.DisableBackgroundForAlpha(listener_);
   config_ = ConfigWithDecisions(request_.preset);
-  const bool tries_depth = decisions_.ShouldTry(kDepthSupervision);
+  const bool tries_depth = decisions_.ShouldTry(kDepthSupervisionEffect);
   if (tries_depth) AddSparseDepths(scene_.posed, scene_.normalized_from_world, data_);
   decisions_.RunTrials(config_, facts_, config_.train.time_budget - watch_.Seconds(), data_,
                        listener_);

@@ -60,14 +60,14 @@ void Step(benchmark::State& state, const EffectDescriptor& effect, bool on) {
 }
 #define NERF_STEP(name, ...) \
   BENCHMARK_CAPTURE(Step, name, __VA_ARGS__)->UseRealTime()->Unit(benchmark::kMillisecond)
-NERF_STEP(as_by_default, kViewDependence, true);
-NERF_STEP(without_view_dependence, kViewDependence, false);
-NERF_STEP(with_background, kBackground, true);
-NERF_STEP(with_exposure, kExposure, true);
-NERF_STEP(with_robust, kRobust, true);
-NERF_STEP(with_pose_refinement, kPoseRefinement, true);
-NERF_STEP(with_anti_aliasing, kAntiAliasing, true);
-NERF_STEP(without_unbounded, kUnbounded, false);
+NERF_STEP(as_by_default, kViewDependenceEffect, true);
+NERF_STEP(without_view_dependence, kViewDependenceEffect, false);
+NERF_STEP(with_background, kBackgroundEffect, true);
+NERF_STEP(with_exposure, kExposureEffect, true);
+NERF_STEP(with_robust, kRobustEffect, true);
+NERF_STEP(with_pose_refinement, kPoseRefinementEffect, true);
+NERF_STEP(with_anti_aliasing, kAntiAliasingEffect, true);
+NERF_STEP(without_unbounded, kUnboundedEffect, false);
 
 }  // namespace
 }  // namespace nerf
