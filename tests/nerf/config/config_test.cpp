@@ -137,7 +137,8 @@ TEST(Config, EveryKeyHasHelp) {
   Config config;
   for (const EffectDescriptor* effect : AllEffects()) config = WithEffect(config, *effect, true);
   std::set<std::string> keys;
-  for (const auto& [pointer, value] : JsonFromConfig(config).flatten().items()) {
+  const nlohmann::json flat = JsonFromConfig(config).flatten();
+  for (const auto& [pointer, value] : flat.items()) {
     std::string key = pointer.substr(1);
     std::ranges::replace(key, '/', '.');
     keys.insert(key);
