@@ -8,26 +8,11 @@
 #include <vector>
 
 #include "nerf/kernels/matrix_product.h"
+#include "nerf/reference/mlp.h"
 #include "tests/support/simd_levels.h"
 
 namespace nerf::kernels {
 namespace {
-
-using LayerWeights = std::vector<std::vector<double>>;  // per layer: [outputs, inputs]
-
-// The network in plain double loops.
-std::vector<double> Reference(const std::vector<int>& widths, const LayerWeights& weights,
-                              std::vector<double> x) {
-  for (std::size_t l = 0; l + 1 < widths.size(); ++l) {
-    std::vector<double> y(widths[l + 1], 0.0);
-    for (int o = 0; o < widths[l + 1]; ++o) {
-      for (int i = 0; i < widths[l]; ++i) y[o] += weights[l][o * widths[l] + i] * x[i];
-      if (l + 2 < widths.size()) y[o] = std::max(y[o], 0.0);
-    }
-    x = y;
-  }
-  return x;
-}
 
 class TileMlps : public test::EverySimdLevel {
  protected:
@@ -56,7 +41,7 @@ class TileMlps : public test::EverySimdLevel {
   double Loss() const {
     double loss = 0;
     for (std::int64_t s = 0; s < samples_; ++s) {
-      const auto out = Reference(widths_, weights_, InputsOf(s));
+      const auto out = reference::Mlp(widths_, weights_, InputsOf(s));
       for (int o = 0; o < widths_.back(); ++o) loss += direction_[s * widths_.back() + o] * out[o];
     }
     return loss;
@@ -75,7 +60,7 @@ class TileMlps : public test::EverySimdLevel {
 
   std::vector<int> widths_;
   std::int64_t samples_ = 0;
-  LayerWeights weights_;
+  reference::Weights weights_;
   std::vector<double> inputs_, direction_;
 };
 
@@ -106,7 +91,7 @@ TEST_P(TileMlps, ForwardAndBackwardMatchPlainLoopsAndCentralDifferences) {
     mlp.Forward(kSamples, rows);
     const std::size_t last = widths.size() - 1;
     for (std::int64_t s = 0; s < kSamples; ++s) {
-      const auto expected = Reference(widths, weights_, InputsOf(s));
+      const auto expected = reference::Mlp(widths, weights_, InputsOf(s));
       for (int o = 0; o < widths.back(); ++o) {
         EXPECT_NEAR(at(last, s, o), expected[o], 1e-4 * (1 + std::fabs(expected[o])));
         at(last, s, o) = static_cast<float>(direction_[s * widths.back() + o]);
