@@ -9,6 +9,7 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
+#include "nerf/base/quantile.h"
 
 namespace nerf::sfm {
 namespace {
@@ -27,10 +28,8 @@ void ExposeAndEncode(OIIO::ImageBuf& linear) {
   std::vector<float> values(static_cast<std::size_t>(spec.width) * spec.height * spec.nchannels);
   linear.get_pixels(linear.roi(), OIIO::TypeFloat, values.data());
   for (float& value : values) value = std::isfinite(value) ? std::max(value, 0.0f) : 0.0f;
-  std::vector<float> sorted = values;
-  const auto percentile = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 99 / 100);
-  std::nth_element(sorted.begin(), percentile, sorted.end());
-  const float scale = *percentile > 0 ? 1 / *percentile : 1.0f;
+  const float bright = ValueOfRank(std::vector(values), values.size() * 99 / 100);
+  const float scale = bright > 0 ? 1 / bright : 1.0f;
   for (float& value : values) {
     const float x = std::min(value * scale, 1.0f);
     value = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;

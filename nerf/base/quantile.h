@@ -34,4 +34,13 @@ std::ranges::range_value_t<Values> UpperMedian(Values&& values) {
   return ValueOfRank(values, count / 2);
 }
 
+// The median, for an even number of values the mean of the two in the middle. 0 if there are no
+// values.
+template <std::ranges::random_access_range Values>
+std::ranges::range_value_t<Values> Median(Values&& values) {
+  const auto count = static_cast<std::size_t>(std::ranges::size(values));
+  if (count == 0) return {};
+  return (ValueOfRank(values, (count - 1) / 2) + ValueOfRank(values, count / 2)) / 2;
+}
+
 }  // namespace nerf

@@ -53,9 +53,12 @@ void PrintEvaluation(const Evaluation& evaluation) {
   fmt::print("{:.1f} samples per ray, {:.0f} MB peak memory\n", cost.SamplesPerRay(),
              PeakMegabytes());
   if (cost.seconds.Sum() == 0) return;  // the renderer does not time its stages
-  fmt::print("per frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, rest {:.2f} s\n",
-             cost.PerView(cost.seconds.sampling), cost.PerView(cost.seconds.encoding),
-             cost.PerView(cost.seconds.networks), cost.PerView(cost.seconds.compositing));
+  fmt::print(
+      "per frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, compositing {:.2f} s, "
+      "other {:.2f} s\n",
+      cost.PerView(cost.seconds.sampling), cost.PerView(cost.seconds.encoding),
+      cost.PerView(cost.seconds.networks), cost.PerView(cost.seconds.compositing),
+      std::max(0.0, evaluation.Mean().seconds - cost.PerView(cost.seconds.Sum())));
 }
 
 nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& all, int steps) {

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "nerf/base/quantile.h"
+
 namespace nerf {
 namespace {
 
@@ -23,12 +25,13 @@ constexpr double kUsualAgreement = 0.1;        // share of the covered texels wi
 // Colours are clamped away from 0 and 1, whose inverse activations are infinite.
 constexpr float kFaintest = 0.01f;
 
-Color MedianOf(std::vector<Color>& colors) {
+// The median of each channel.
+Color MedianOf(const std::vector<Color>& colors) {
   Color median;
-  const std::size_t high = colors.size() / 2, low = (colors.size() - 1) / 2;
+  std::vector<float> values(colors.size());
   for (int c = 0; c < 3; ++c) {
-    std::ranges::sort(colors, {}, [c](const Color& color) { return color[c]; });
-    median[c] = (colors[low][c] + colors[high][c]) / 2;
+    std::ranges::transform(colors, values.begin(), [c](const Color& color) { return color[c]; });
+    median[c] = Median(values);
   }
   return median;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "nerf/base/quantile.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/model/parameters.h"
 #include "nerf/train/trainer.h"
@@ -40,10 +41,8 @@ ShortTraining TrainShortly(const Config& config, const SceneFacts& scene, const 
   for (int done = 0; done < steps; done += kTimedSteps) {
     seconds.push_back(trainer.TakeSteps(std::min(kTimedSteps, steps - done)));
   }
-  std::ranges::nth_element(seconds,
-                           seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2));
   ShortTraining result;
-  result.seconds_per_step = seconds[seconds.size() / 2];
+  result.seconds_per_step = UpperMedian(seconds);
   result.psnr = trainer.ValidationPsnrAtOwnExposure();
   result.megabytes = MegabytesOf(trainer.GetModel());
   result.seconds = watch.Seconds();

@@ -49,7 +49,7 @@ struct PacketRenderer::Tile {
   std::vector<float> kept_weight;
   FieldTile field;
   std::int64_t evaluated = 0;
-  double sampling_seconds = 0;
+  double sampling_seconds = 0, compositing_seconds = 0;
 };
 
 PacketRenderer::PacketRenderer(const ModelParts& parts, const RenderQuality& quality)
@@ -67,6 +67,7 @@ void PacketRenderer::Begin(const RayBatch& rays, std::int64_t first, std::int64_
   LapTimer timer;
   tile.evaluated = 0;
   tile.sampling_seconds = 0;
+  tile.compositing_seconds = 0;
   tile.field.density.seconds = {};
   placement_.Place(rays, first, last, tile.placed);
   timer.Lap(tile.sampling_seconds);
@@ -106,12 +107,14 @@ void PacketRenderer::Shade(const RayBatch& rays, std::int64_t first, Tile& tile)
   field_.Density().Keep(tile.kept, tile.field.density);
   const auto count = static_cast<std::int64_t>(tile.kept.size());
   field_.Radiance(count, tile.kept_ray, std::span(rays.direction).subspan(3 * first), tile.field);
+  LapTimer timer;
   for (std::int64_t i = 0; i < count; ++i) {
     Tile::Ray& ray = tile.rays[tile.kept_ray[i]];
     const float weight = tile.kept_weight[i];
     ray.shaded_weight += weight;
     for (int c = 0; c < 3; ++c) ray.rgb[c] += weight * tile.field.radiance[3 * i + c];
   }
+  timer.Lap(tile.compositing_seconds);
 }
 
 // Evaluates the densities of the tile's current samples.
@@ -132,6 +135,22 @@ void PacketRenderer::Evaluate(const RayBatch& rays, std::int64_t first, Tile& ti
 
 // Advances every ray that is alive by a few samples.
 void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const {
+  LapTimer timer;
+  GatherNext(tile);
+  timer.Lap(tile.compositing_seconds);
+  Evaluate(rays, first, tile);
+  timer = {};
+  Accumulate(tile);
+  timer.Lap(tile.compositing_seconds);
+  Shade(rays, first, tile);
+  std::erase_if(tile.alive, [&](std::int64_t k) {
+    const Tile::Ray& ray = tile.rays[k];
+    return ray.next == ray.end || ray.Transmittance() < quality_.stop_transmittance;
+  });
+}
+
+// Collects the next samples of the rays that are alive.
+void PacketRenderer::GatherNext(Tile& tile) {
   tile.position.clear();
   tile.sample.clear();
   tile.ray.clear();
@@ -146,8 +165,11 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
       tile.ray.push_back(k);
     }
   }
-  Evaluate(rays, first, tile);
+}
 
+// Adds the weights of the current samples to their rays, and keeps the samples to be shaded.
+void PacketRenderer::Accumulate(Tile& tile) const {
+  const RaySamples& s = tile.placed.samples;
   tile.kept.clear();
   tile.kept_ray.clear();
   tile.kept_weight.clear();
@@ -177,11 +199,6 @@ void PacketRenderer::Advance(const RayBatch& rays, std::int64_t first, Tile& til
     tile.kept_ray.push_back(tile.ray[i]);
     tile.kept_weight.push_back(color_weight);
   }
-  Shade(rays, first, tile);
-  std::erase_if(tile.alive, [&](std::int64_t k) {
-    const Tile::Ray& ray = tile.rays[k];
-    return ray.next == ray.end || ray.Transmittance() < quality_.stop_transmittance;
-  });
 }
 
 // Rays that accumulated less than half a share of weight get the colour of the sample with the
@@ -241,7 +258,6 @@ RenderOutput PacketRenderer::RenderRays(const RayBatch& rays) const {
   std::mutex adding;
   ParallelForEach((count + kTileRays - 1) / kTileRays, [&](std::int64_t part) {
     thread_local Tile tile;
-    LapTimer timer;
     const std::int64_t first = part * kTileRays, last = std::min(count, first + kTileRays);
     Begin(rays, first, last, tile);
     while (!tile.alive.empty()) Advance(rays, first, tile);
@@ -252,10 +268,7 @@ RenderOutput PacketRenderer::RenderRays(const RayBatch& rays) const {
     samples += tile.evaluated;
     StageSeconds seconds = tile.field.density.seconds;
     seconds.sampling = tile.sampling_seconds;
-    // Rays advance in small steps, too small to time each.
-    double all = 0;
-    timer.Lap(all);
-    seconds.compositing = all - seconds.sampling - seconds.encoding - seconds.networks;
+    seconds.compositing = tile.compositing_seconds;
     const std::lock_guard lock(adding);
     out.seconds.Add(seconds, 1.0 / NumThreads());
   });

@@ -29,9 +29,11 @@ class PacketRenderer : public RayRenderer {
   struct Tile;
   void Begin(const RayBatch& rays, std::int64_t first, std::int64_t last, Tile& tile) const;
   void RestartMissed(const RayBatch& rays, std::int64_t first, Tile& tile) const;
-  void Shade(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void Advance(const RayBatch& rays, std::int64_t first, Tile& tile) const;
+  static void GatherNext(Tile& tile);
   void Evaluate(const RayBatch& rays, std::int64_t first, Tile& tile) const;
+  void Accumulate(Tile& tile) const;
+  void Shade(const RayBatch& rays, std::int64_t first, Tile& tile) const;
   void ShadeFaint(const RayBatch& rays, std::int64_t first, Tile& tile) const;
 
   RenderOutput RenderRays(const RayBatch& rays) const;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nerf/base/input_error.h"
+#include "nerf/base/quantile.h"
 #include "nerf/scene/camera_intrinsics.h"
 
 namespace nerf {
@@ -29,12 +30,6 @@ struct Sphere {
   Eigen::Vector3d centre;  // relative to the mean camera centre
   double radius = 1;
 };
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The cameras relative to their mean centre, so that positions far from the origin do not cancel.
 class Rig {
@@ -65,7 +60,7 @@ class Rig {
       for (std::size_t i = 0; i < centres_.size(); ++i) {
         radii.push_back((centres_[i] - *focus).norm() * half_widths_[i]);
       }
-      return {*focus, Median(radii)};
+      return {*focus, UpperMedian(radii)};
     }
     if (mean_forward_.norm() >= kForwardFacing) return ForwardFacing(depth);
     return OutwardFacing();
@@ -135,13 +130,13 @@ class Rig {
       }
     }
     if (depths.empty()) return std::nullopt;
-    return Median(depths);
+    return UpperMedian(depths);
   }
 
   Sphere ForwardFacing(std::optional<double> known_depth) const {
     double depth = extent_ > 0 ? kDepthPerExtent * extent_ : 1;
     if (known_depth) depth = *known_depth;
-    return {depth * mean_forward_.normalized(), depth * Median(half_widths_)};
+    return {depth * mean_forward_.normalized(), depth * UpperMedian(std::vector(half_widths_))};
   }
 
   Sphere OutwardFacing() const {
@@ -149,7 +144,7 @@ class Rig {
     for (const SparsePoint& point : posed_.points) {
       distances.push_back((point.x_in_world - origin_).norm());
     }
-    const double to_points = distances.empty() ? 0 : Median(distances);
+    const double to_points = UpperMedian(distances);
     double radius = 2 * extent_;
     if (extent_ <= kOnePoint * to_points) radius = to_points;
     return {Eigen::Vector3d::Zero(), radius > 0 ? radius : 1};

@@ -22,12 +22,19 @@ TEST(Quantile, IsTheValueAtThatShareOfTheSortedValues) {
 TEST(Quantile, OfNoValuesIsZero) {
   EXPECT_EQ(Quantile(std::vector<double>{}, 0.5), 0);
   EXPECT_EQ(UpperMedian(std::span<float>{}), 0);
+  EXPECT_EQ(Median(std::span<float>{}), 0);
 }
 
 TEST(UpperMedian, IsTheUpperOfTwoMiddleValues) {
   EXPECT_EQ(UpperMedian(std::vector<float>{7}), 7);
   EXPECT_EQ(UpperMedian(std::vector<float>{4, 1, 3, 2}), 3);
   EXPECT_EQ(UpperMedian(std::array{9, 1, 5}), 5);
+}
+
+TEST(Median, IsTheMeanOfTwoMiddleValues) {
+  EXPECT_EQ(Median(std::vector<float>{7}), 7);
+  EXPECT_EQ(Median(std::vector<float>{4, 1, 3, 2}), 2.5f);
+  EXPECT_EQ(Median(std::array{9, 1, 5}), 5);
 }
 
 TEST(ValueOfRank, AgreesWithSorting) {

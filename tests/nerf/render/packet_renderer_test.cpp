@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "nerf/base/input_error.h"
+#include "nerf/base/stopwatch.h"
 #include "nerf/render/image_renderer.h"
 #include "tests/support/simd_levels.h"
 #include "tests/support/two_engines.h"
@@ -163,6 +164,19 @@ TEST(PacketRenderer, DoesNotHideNaN) {
   for (auto& p : e.field->named_parameters()) p.value().fill_(std::nanf(""));
   RenderQuality quality = RenderQuality::Of(0.3, e.march, e.proposal_options);
   for (const float value : RenderWith(e, quality).rgb) EXPECT_TRUE(std::isnan(value));
+}
+
+TEST(PacketRenderer, TimedStagesSumToAtMostTheWholeTime) {
+  TwoEngines e;
+  e.Make(600, true);
+  const PacketRenderer renderer(*e.parts, Exact(e));
+  const Stopwatch watch;
+  const StageSeconds stages = renderer.Render(e.batch.rays).seconds;
+  EXPECT_LE(stages.Sum(), watch.Seconds());
+  for (const double seconds :
+       {stages.sampling, stages.encoding, stages.networks, stages.compositing}) {
+    EXPECT_GT(seconds, 0);
+  }
 }
 
 TEST(RenderQuality, GoesFromFastToExact) {
