@@ -10,6 +10,7 @@
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/threads.h"
+#include "nerf/effects/effects.h"
 #include "nerf/effects/inspection.h"
 #include "nerf/effects/inspection_picture.h"
 #include "nerf/image/image_io.h"
@@ -26,6 +27,15 @@ struct InspectArguments {
   bool json = false;
   std::string picture;
 };
+
+// What each effect simulates, for --help.
+std::string EffectTable() {
+  std::string table = "Effects, with the stage of the rays at which they run:\n";
+  for (const EffectDescriptor* effect : AllEffects()) {
+    table += fmt::format("  {:<17}  {:<14}  {}\n", effect->name, effect->stage, effect->help);
+  }
+  return table;
+}
 
 nlohmann::json JsonFrom(const PosedImages& posed, const Inspection& inspection) {
   nlohmann::json verdicts = nlohmann::json::array(), exposures = nlohmann::json::object();
@@ -103,7 +113,8 @@ void AddInspectCommand(CLI::App& app) {
       "write a plot to FILE.png: the exposure of each photograph, and the colour change of points "
       "with the viewing angle, which increases for glossy surfaces");
   command->footer(
-      "Examples:\n"
+      EffectTable() +
+      "\nExamples:\n"
       "  nerf inspect photos/fox/colmap --picture fox.png\n"
       "  nerf inspect photos/fox/colmap\n"
       "  nerf sample drift --scenario exposure && nerf inspect drift/truth/sparse");

@@ -81,7 +81,7 @@ const EffectDescriptor kAntiAliasingEffect = {
     .name = "anti_aliasing",
     .old_name = "footprint",
     .help = "a pixel averages a patch that grows with the distance: finer levels get less weight",
-    .hook = "encode",
+    .stage = "encode",
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgeAntiAliasing(*e.posed)

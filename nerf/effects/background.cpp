@@ -21,7 +21,7 @@ const EffectDescriptor kBackgroundEffect = {
     .name = "background",
     .old_name = nullptr,
     .help = "a learned colour for each direction behind everything, such as a sky",
-    .hook = "background",
+    .stage = "background",
     .parameters = "background.",
     .judge =
         [](const CaptureEvidence& e) {

@@ -93,7 +93,7 @@ const EffectDescriptor kDepthSupervisionEffect = {
     .name = "depth_supervision",
     .old_name = "depth",
     .help = "for few photographs: rays through sparse points must end there",
-    .hook = "loss",
+    .stage = "loss",
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgeDepthSupervision(*e.posed, e.frame)

@@ -11,7 +11,7 @@ struct EffectDescriptor {
   const char* name;      // key in the configuration's `effects`, and in --effects
   const char* old_name;  // alias, accepted for one more version; null: none
   const char* help;      // what it simulates, one line
-  const char* hook;      // the stage of a ray's path at which it runs
+  const char* stage;     // of the path from a ray to a pixel (README.md), at which it runs
   // Prefix of its trained parameters in a checkpoint; null: it has none.
   const char* parameters = nullptr;
   // Decides whether a capture calls for it.

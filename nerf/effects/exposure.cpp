@@ -29,7 +29,7 @@ const EffectDescriptor kExposureEffect = {
     .name = "exposure",
     .old_name = nullptr,
     .help = "a gain for each photograph and channel: exposure and white balance that differ",
-    .hook = "exposure",
+    .stage = "exposure",
     .parameters = "exposure.",
     .judge =
         [](const CaptureEvidence& e) {

@@ -24,7 +24,7 @@ const EffectDescriptor kMasksEffect = {
     .name = "masks",
     .old_name = nullptr,
     .help = "pixels that are black in a mask are ignored, or empty",
-    .hook = "pixel",
+    .stage = "pixel",
     .judge = [](const CaptureEvidence& e) { return JudgeMasks(e.facts); },
 };
 

@@ -36,7 +36,7 @@ const EffectDescriptor kPoseRefinementEffect = {
     .name = "pose_refinement",
     .old_name = "poses",
     .help = "poses and focal lengths that are a little wrong, refined with the field",
-    .hook = "warp",
+    .stage = "camera",
     .parameters = "poses.",
     .judge =
         [](const CaptureEvidence& e) {

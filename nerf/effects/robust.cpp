@@ -46,7 +46,7 @@ const EffectDescriptor kRobustEffect = {
     .name = "robust",
     .old_name = nullptr,
     .help = "a loss in which large errors have little weight: passers-by, moving shadows",
-    .hook = "loss",
+    .stage = "loss",
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgeRobust(e.colors, e.fit)

@@ -27,7 +27,7 @@ const EffectDescriptor kUnboundedEffect = {
     .name = "unbounded",
     .old_name = nullptr,
     .help = "matter at any distance, in contracted space; without it rays end at the unit ball",
-    .hook = "march",
+    .stage = "march",
     .judge =
         [](const CaptureEvidence& e) {
           if (!e.has_poses) return Undecided(kUnboundedEffect.name, e.unknown_because);

@@ -49,7 +49,7 @@ const EffectDescriptor kViewDependenceEffect = {
     .name = "view_dependence",
     .old_name = "view",
     .help = "colour that depends on the viewing direction: gloss and mirrors",
-    .hook = "colour model",
+    .stage = "colour network",
     .judge =
         [](const CaptureEvidence& e) {
           return e.HasTracks() ? JudgeViewDependence(e.colors, e.fit)
