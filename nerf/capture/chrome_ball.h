@@ -14,7 +14,7 @@ struct BallOutline {
 };
 
 // The outline of a ball from its mask: the centre of mass, and the radius of a disc of equal area.
-//   mask   3 channels; the ball is where the first is above 0.5
+//   mask   the ball is where the first channel is above 0.5
 //   name   of the file of the mask, for messages
 // Throws InputError if the mask is empty, less than 10 pixels wide, or not a disc.
 BallOutline FindBall(const Image& mask, const std::string& name);

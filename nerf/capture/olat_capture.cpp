@@ -10,6 +10,7 @@
 #include "nerf/capture/chrome_ball.h"
 #include "nerf/image/image_files.h"
 #include "nerf/image/image_io.h"
+#include "nerf/image/mask.h"
 #include "nerf/light/light_file.h"
 
 namespace nerf {
@@ -140,10 +141,8 @@ std::optional<fs::path> Near(const fs::path& folder, const char* name) {
 
 void CheckSizes(OlatCapture& capture) {
   const auto check = [&](const fs::path& file) {
-    const ImageHeader header = ReadImageHeader(file);
-    const bool rotated = header.orientation > 4;
-    const int width = rotated ? header.height : header.width;
-    const int height = rotated ? header.width : header.height;
+    const ImageSize header = ReadImageHeader(file);
+    const auto [width, height, _] = Upright(header);
     if (capture.width == 0) capture.width = width, capture.height = height;
     if (width == capture.width && height == capture.height) return;
     throw InputError("{}: {} x {} pixels, but {} has {} x {}; all images must have the same size",
@@ -220,7 +219,7 @@ std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, Input
                      folder.string(), pictures.images.size(), capture.images.size(), capture.name);
   }
   const BallOutline ball =
-      FindBall(ReadLinearImage(*pictures.mask, InputEncoding::kLinear), pictures.mask->string());
+      FindBall(ReadMaskCoverage(*pictures.mask, true), pictures.mask->string());
   std::vector<DirectionalLight> lights;
   for (const fs::path& file : pictures.images) {
     lights.push_back({LightFromHighlight(ReadLinearImage(file, encoding), ball, file.string())});

@@ -11,6 +11,7 @@
 #include "nerf/base/parallel.h"
 #include "nerf/base/progress.h"
 #include "nerf/base/quantile.h"
+#include "nerf/image/mask.h"
 
 namespace nerf {
 namespace {
@@ -40,9 +41,9 @@ std::vector<int> PixelsInside(const OlatCapture& capture) {
     for (int i = 0; i < count; ++i) pixels[static_cast<std::size_t>(i)] = i;
     return pixels;
   }
-  const Image mask = ReadLinearImage(*capture.mask, InputEncoding::kLinear);
+  const Image mask = ReadMaskCoverage(*capture.mask, true);
   for (int i = 0; i < count; ++i) {
-    if (mask.pixels[static_cast<std::size_t>(i) * 3] > 0.5f) pixels.push_back(i);
+    if (mask.pixels[static_cast<std::size_t>(i)] > 0.5f) pixels.push_back(i);
   }
   if (pixels.empty()) {
     throw InputError("{}: the mask is black; paint the subject white", capture.mask->string());

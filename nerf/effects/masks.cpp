@@ -11,10 +11,13 @@ Verdict JudgeMasks(const PhotographFacts& facts) {
   if (facts.masks == 0) return Fact(kMasksEffect.name, false, 0, "no masks");
   // The surroundings of a subject that was cut out have one colour; content to ignore has many.
   const bool cut_out = facts.masked_spread < kOneColor;
+  const std::string found = fmt::format("{} of {} photographs have a mask, {:.1f} % masked out",
+                                        facts.masks, facts.photographs, 100 * facts.masked_out);
+  if (facts.masked_out == 0) {
+    return Fact(kMasksEffect.name, false, 0, found + ": nothing is black, or has alpha 0");
+  }
   return Fact(kMasksEffect.name, true, facts.masks,
-              fmt::format("{} of {} photographs have a mask; the masked {:.1f} % of the pixels {}",
-                          facts.masks, facts.photographs, 100 * facts.masked_out,
-                          cut_out ? "have one colour: empty" : "have content: ignore"),
+              found + (cut_out ? ", of one colour: empty" : ", with content: ignore"),
               cut_out ? R"({"meaning": "empty"})" : R"({"meaning": "ignore"})");
 }
 

@@ -1,10 +1,11 @@
 #include "nerf/image/exif_exposure.h"
 
-#include <OpenImageIO/imageio.h>
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
 #include <limits>
+
+#include "nerf/image/oiio_files.h"
 
 namespace nerf {
 namespace {
@@ -37,7 +38,7 @@ Quantity FromBoth(const char* plain_name, float plain, double stops_of_plain, co
 }  // namespace
 
 std::optional<ExifExposure> ReadExifExposure(const std::filesystem::path& path) {
-  const auto input = OIIO::ImageInput::open(path.string());
+  const auto input = OpenImageInput(path);
   if (!input) {
     OIIO::geterror();  // training reports the file
     return std::nullopt;

@@ -9,6 +9,8 @@ namespace nerf {
 // photographs are, or proportional to radiance, as EXR and HDR files are.
 enum class ColorEncoding { kSrgb, kLinear };
 
+inline constexpr int kAlphaChannel = 3;  // where there is one
+
 // An image in memory: `height` rows of `width` pixels of `channels` floats, top row first.
 // Colour is in [0,1] for sRGB and unbounded for linear images. Channel 3, where present, is alpha
 // in [0,1]; colour is not premultiplied ("straight").

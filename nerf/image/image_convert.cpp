@@ -9,9 +9,7 @@
 namespace nerf {
 namespace {
 
-constexpr int kAlpha = 3;  // the alpha channel, where there is one
-
-int NumColors(const Image& image) { return std::min(image.channels, kAlpha); }
+int NumColors(const Image& image) { return std::min(image.channels, kAlphaChannel); }
 
 template <class Transfer>
 Image WithTransfer(const Image& image, ColorEncoding encoding, Transfer transfer) {
@@ -36,7 +34,7 @@ void AverageBlock(const Image& image, int x0, int y0, int factor, float* mean) {
   for (int y = y0; y < y0 + factor; ++y) {
     for (int x = x0; x < x0 + factor; ++x) {
       const float* pixel = image.At(x, y);
-      const double alpha = image.channels > kAlpha ? pixel[kAlpha] : 1.0;
+      const double alpha = image.channels > kAlphaChannel ? pixel[kAlphaChannel] : 1.0;
       total_alpha += alpha;
       for (int c = 0; c < NumColors(image); ++c) {
         weighted[c] += alpha * pixel[c];
@@ -48,7 +46,7 @@ void AverageBlock(const Image& image, int x0, int y0, int factor, float* mean) {
   for (int c = 0; c < NumColors(image); ++c) {
     mean[c] = static_cast<float>(total_alpha > 0 ? weighted[c] / total_alpha : plain[c] / count);
   }
-  if (image.channels > kAlpha) mean[kAlpha] = static_cast<float>(total_alpha / count);
+  if (image.channels > kAlphaChannel) mean[kAlphaChannel] = static_cast<float>(total_alpha / count);
 }
 
 }  // namespace
@@ -63,13 +61,14 @@ Image ToLinear(const Image& image) {
 
 Image OnWhite(const Image& image) {
   Image source = ToSrgb(image);
-  if (image.channels <= kAlpha) return source;
-  Image result(image.width, image.height, kAlpha);
+  if (image.channels <= kAlphaChannel) return source;
+  Image result(image.width, image.height, kAlphaChannel);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const float* from = source.At(x, y);
       float* to = result.At(x, y);
-      for (int c = 0; c < kAlpha; ++c) to[c] = from[c] * from[kAlpha] + (1 - from[kAlpha]);
+      for (int c = 0; c < kAlphaChannel; ++c)
+        to[c] = from[c] * from[kAlphaChannel] + (1 - from[kAlphaChannel]);
     }
   }
   return result;
@@ -96,6 +95,26 @@ Image Downscale(const Image& image, int factor) {
     }
   }
   return image.encoding == ColorEncoding::kSrgb ? ToSrgb(small) : small;
+}
+
+// Not ImageBufAlgo::reorient, which in OpenImageIO 2.4 handles orientation 5 as 7.
+Image TurnedUpright(Image stored, int orientation) {
+  if (orientation == 1) return stored;
+  const bool transposed = orientation >= 5;
+  const bool flip_x = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
+  const bool flip_y = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+  Image upright(transposed ? stored.height : stored.width,
+                transposed ? stored.width : stored.height, stored.channels, stored.encoding);
+  for (int y = 0; y < upright.height; ++y) {
+    for (int x = 0; x < upright.width; ++x) {
+      const int column = transposed ? y : x;
+      const int row = transposed ? x : y;
+      const float* from = stored.At(flip_x ? stored.width - 1 - column : column,
+                                    flip_y ? stored.height - 1 - row : row);
+      std::copy_n(from, stored.channels, upright.At(x, y));
+    }
+  }
+  return upright;
 }
 
 }  // namespace nerf

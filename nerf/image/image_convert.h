@@ -22,4 +22,7 @@ Image Quantized(const Image& image);
 // Throws InputError when the image is smaller than one block or the factor is below 1.
 Image Downscale(const Image& image, int factor);
 
+// The image rotated and mirrored by its EXIF orientation, 1 to 8.
+Image TurnedUpright(Image stored, int orientation);
+
 }  // namespace nerf

@@ -1,17 +1,45 @@
 #include "nerf/image/image_files.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <tuple>
+
+#include "nerf/base/text.h"
+#include "nerf/image/oiio_files.h"
 
 namespace fs = std::filesystem;
 
 namespace nerf {
+
+namespace {
+
+// Files that could be meant: of equal name but for upper and lower case, or with an extension more.
+struct Candidates {
+  std::vector<fs::path> same_name, with_extension;
+};
+
+Candidates CandidatesFor(const fs::path& path) {
+  const std::string name = Lowercase(path.filename().string());
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  Candidates candidates;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::error_code unreadable;
+    const fs::path& file = it->path();
+    if (!it->is_regular_file(unreadable)) continue;
+    if (Lowercase(file.filename().string()) == name) {
+      candidates.same_name.push_back(file);
+    } else if (HasImageExtension(file) && Lowercase(file.stem().string()) == name) {
+      candidates.with_extension.push_back(file);
+    }
+  }
+  return candidates;
+}
+
+}  // namespace
 
 bool HasImageExtension(const fs::path& file) {
   // The formats of OpenImageIO except films, volumes and textures. Which of them it reads depends
@@ -20,9 +48,7 @@ bool HasImageExtension(const fs::path& file) {
       ".jpg",  ".jpeg", ".png", ".tif", ".tiff", ".exr", ".hdr", ".webp", ".bmp",  ".tga",
       ".ppm",  ".pgm",  ".pnm", ".jp2", ".j2k",  ".dpx", ".gif", ".psd",  ".heic", ".heif",
       ".avif", ".dng",  ".cr2", ".nef", ".arw",  ".orf", ".rw2", ".raf"};
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = Lowercase(file.extension().string());
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
@@ -41,8 +67,27 @@ std::vector<fs::path> ImageFilesIn(const fs::path& folder) {
   return files;
 }
 
+std::optional<fs::path> FindImageFile(const fs::path& path) {
+  std::error_code error;
+  for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".exr"}) {
+    fs::path file = path;
+    file += extension;
+    if (fs::is_regular_file(file, error)) return file;
+  }
+  Candidates candidates = CandidatesFor(path);
+  if (candidates.same_name.size() == 1) return candidates.same_name[0];
+  if (!candidates.same_name.empty()) return std::nullopt;
+  // Of several, one whose name agrees in upper and lower case.
+  const auto rank = [&path](const fs::path& file) {
+    return std::tuple(file.stem() != path.filename(), file.string());
+  };
+  const auto best = std::ranges::min_element(candidates.with_extension, {}, rank);
+  if (best == candidates.with_extension.end()) return std::nullopt;
+  return *best;
+}
+
 std::optional<ImageSize> ReadImageSize(const fs::path& file) {
-  const auto input = OIIO::ImageInput::open(file.string());
+  const auto input = OpenImageInput(file);
   if (!input) {
     OIIO::geterror();  // cleared, else OpenImageIO prints it at exit
     return std::nullopt;
@@ -50,9 +95,7 @@ std::optional<ImageSize> ReadImageSize(const fs::path& file) {
   const OIIO::ImageSpec& spec = input->spec();
   // The display window: an EXR may store only a part of it.
   if (spec.full_width <= 0 || spec.full_height <= 0) return std::nullopt;
-  ImageSize size{spec.full_width, spec.full_height, spec.get_int_attribute("Orientation", 1)};
-  if (size.orientation < 1 || size.orientation > 8) size.orientation = 1;
-  return size;
+  return ImageSize{spec.full_width, spec.full_height, OrientationOf(spec)};
 }
 
 }  // namespace nerf

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "nerf/image/image_size.h"
+
 namespace nerf {
 
 // Whether a file has the extension of an image format that OpenImageIO reads (jpg, png, tif, exr,
@@ -14,12 +16,11 @@ bool HasImageExtension(const std::filesystem::path& file);
 // name. Hidden files are skipped. Empty where the folder does not exist or cannot be listed.
 std::vector<std::filesystem::path> ImageFilesIn(const std::filesystem::path& folder);
 
-// Size in pixels as stored in the file, and the EXIF orientation (1..8; 5..8 rotate by 90 degrees).
-struct ImageSize {
-  int width = 0;
-  int height = 0;
-  int orientation = 1;
-};
+// The image file that a list of photographs means by `path`: that file; or, where it does not
+// exist, the one whose name differs in upper and lower case only, as after a copy from a camera's
+// card; or the one that has the extension of an image after this name, which Blender's exporter
+// omits. nullopt if there is none, or several differ in upper and lower case only.
+std::optional<std::filesystem::path> FindImageFile(const std::filesystem::path& path);
 
 // Reads only the header. nullopt where OpenImageIO finds no image in the file.
 std::optional<ImageSize> ReadImageSize(const std::filesystem::path& file);

@@ -1,9 +1,6 @@
 #include "nerf/image/image_io.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -13,6 +10,8 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/base/temporary_file.h"
+#include "nerf/base/text.h"
+#include "nerf/image/oiio_files.h"
 
 namespace nerf {
 namespace {
@@ -21,15 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kMaxPixels = 1'000'000'000;
 constexpr int kJpegQuality = 95;
-constexpr int kAlphaChannel = 3;
-
-std::string Lowercase(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
-// Messages of OpenImageIO may have several lines; those of InputError have one.
-std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 void CheckSize(std::int64_t width, std::int64_t height, const fs::path& path) {
   if (width >= 1 && height >= 1 && width * height <= kMaxPixels) return;
@@ -45,7 +35,7 @@ std::unique_ptr<OIIO::ImageInput> Open(const fs::path& path) {
   }
   OIIO::ImageSpec keep_straight_alpha;
   keep_straight_alpha.attribute("oiio:UnassociatedAlpha", 1);
-  auto input = OIIO::ImageInput::open(path.string(), &keep_straight_alpha);
+  auto input = OpenImageInput(path, &keep_straight_alpha);
   if (!input) {
     throw InputError("{}: cannot be read as an image: {}", path.string(),
                      FirstLine(OIIO::geterror()));
@@ -59,10 +49,7 @@ std::unique_ptr<OIIO::ImageInput> Open(const fs::path& path) {
   return input;
 }
 
-int Orientation(const OIIO::ImageSpec& spec) {
-  const int orientation = spec.get_int_attribute("Orientation", 1);
-  return orientation >= 1 && orientation <= 8 ? orientation : 1;
-}
+enum class Alpha { kStraight, kDropped };
 
 // The indices of the file's channels R, G, B and, where it has one, A.
 std::vector<int> PickChannels(const OIIO::ImageSpec& spec, const fs::path& path) {
@@ -145,28 +132,10 @@ void MakeAlphaStraight(Image& image) {
   }
 }
 
-// Not ImageBufAlgo::reorient, which in OpenImageIO 2.4 handles orientation 5 as 7.
-Image TurnUpright(const Image& stored, int orientation) {
-  const bool transposed = orientation >= 5;
-  const bool flip_x = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
-  const bool flip_y = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
-  Image upright(transposed ? stored.height : stored.width,
-                transposed ? stored.width : stored.height, stored.channels, stored.encoding);
-  for (int y = 0; y < upright.height; ++y) {
-    for (int x = 0; x < upright.width; ++x) {
-      const int column = transposed ? y : x;
-      const int row = transposed ? x : y;
-      const float* from = stored.At(flip_x ? stored.width - 1 - column : column,
-                                    flip_y ? stored.height - 1 - row : row);
-      std::copy_n(from, stored.channels, upright.At(x, y));
-    }
-  }
-  return upright;
-}
-
-Image Decode(OIIO::ImageInput& input, const fs::path& path) {
+Image Decode(OIIO::ImageInput& input, const fs::path& path, Alpha alpha) {
   const OIIO::ImageSpec spec = input.spec();
-  const std::vector<int> channels = PickChannels(spec, path);
+  std::vector<int> channels = PickChannels(spec, path);
+  if (alpha == Alpha::kDropped) channels.resize(kAlphaChannel);
   const auto encoding = IsLinear(input) ? ColorEncoding::kLinear : ColorEncoding::kSrgb;
   Image image = Gather(spec, ReadAllChannels(input, path), channels, encoding);
   CheckFinite(image, path);
@@ -192,7 +161,7 @@ FileFormat FormatOf(const fs::path& path) {
 
 void Encode(const fs::path& path, const fs::path& shown_path, OIIO::ImageSpec spec,
             OIIO::TypeDesc type, const void* pixels) {
-  const auto output = OIIO::ImageOutput::create(path.string());
+  const auto output = CreateImageOutput(path);
   if (!output) {
     throw InputError("{}: cannot be written: {}", shown_path.string(), FirstLine(OIIO::geterror()));
   }
@@ -231,24 +200,31 @@ void EncodeRadiance(const fs::path& path, const fs::path& shown_path, const Imag
   Encode(path, shown_path, spec, OIIO::TypeFloat, premultiplied.pixels.data());
 }
 
-}  // namespace
-
-Image ReadImage(const fs::path& path, bool upright_by_exif) {
+Image Read(const fs::path& path, bool upright_by_exif, Alpha alpha) {
   const auto input = Open(path);
-  const int orientation = upright_by_exif ? Orientation(input->spec()) : 1;
+  const int orientation = upright_by_exif ? OrientationOf(input->spec()) : 1;
   try {
-    Image image = Decode(*input, path);
-    return orientation == 1 ? std::move(image) : TurnUpright(image, orientation);
+    return TurnedUpright(Decode(*input, path, alpha), orientation);
   } catch (const std::bad_alloc&) {
     throw InputError("{}: {} x {} pixels do not fit into memory", path.string(),
                      input->spec().width, input->spec().height);
   }
 }
 
-ImageHeader ReadImageHeader(const fs::path& path) {
+}  // namespace
+
+Image ReadImage(const fs::path& path, bool upright_by_exif) {
+  return Read(path, upright_by_exif, Alpha::kStraight);
+}
+
+Image ReadStoredColors(const fs::path& path, bool upright_by_exif) {
+  return Read(path, upright_by_exif, Alpha::kDropped);
+}
+
+ImageSize ReadImageHeader(const fs::path& path) {
   const auto input = Open(path);
   const OIIO::ImageSpec& spec = input->spec();
-  return {.width = spec.full_width, .height = spec.full_height, .orientation = Orientation(spec)};
+  return {.width = spec.full_width, .height = spec.full_height, .orientation = OrientationOf(spec)};
 }
 
 std::optional<ColorEncoding> ReadColorEncoding(const fs::path& path) {

@@ -5,6 +5,7 @@
 
 #include "nerf/image/image.h"
 #include "nerf/image/image_convert.h"  // Downscale
+#include "nerf/image/image_size.h"
 #include "nerf/image/srgb.h"
 
 namespace nerf {
@@ -17,13 +18,11 @@ namespace nerf {
 // Throws InputError naming the file when it is missing, truncated, or contains a non-finite value.
 Image ReadImage(const std::filesystem::path& path, bool upright_by_exif);
 
-// Width and height as stored, and the EXIF orientation (1..8), without reading the pixels.
-struct ImageHeader {
-  int width = 0;
-  int height = 0;
-  int orientation = 1;
-};
-ImageHeader ReadImageHeader(const std::filesystem::path& path);
+// The same without alpha: 3 channels, colours as the file stores them, premultiplied or not.
+Image ReadStoredColors(const std::filesystem::path& path, bool upright_by_exif);
+
+// Reads only the header. Throws InputError as ReadImage does.
+ImageSize ReadImageHeader(const std::filesystem::path& path);
 
 // The encoding that ReadImage would return, without reading the pixels; nullopt where the file is
 // no image.

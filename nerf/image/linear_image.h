@@ -22,7 +22,9 @@ bool StoresLinearLight(const std::filesystem::path& file);
 // opened.
 bool StoresIntegers(const std::filesystem::path& file);
 
-// Reads an image as linear light, 3 channels; alpha is dropped. Integers are scaled to [0,1].
+// Reads an image as linear light, 3 channels. What is stored is the light: alpha is dropped, and
+// colours that are premultiplied with it (EXR), such as those of a glow with alpha 0, stay as they
+// are. Integers are scaled to [0,1].
 // Throws InputError naming the file.
 Image ReadLinearImage(const std::filesystem::path& file, InputEncoding encoding);
 

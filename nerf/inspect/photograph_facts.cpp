@@ -6,7 +6,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/image/image_convert.h"
 #include "nerf/image/image_io.h"
-#include "nerf/image/mask.h"
+#include "nerf/scene/photograph.h"
 
 namespace nerf {
 namespace {
@@ -65,8 +65,7 @@ PhotographFacts ExaminePhotographs(const PosedImages& posed) {
     facts.linear = facts.linear || photograph.encoding == ColorEncoding::kLinear;
     sums.Add(photograph);
     if (image.mask.empty()) continue;
-    sums.AddMasked(ToSrgb(photograph), ReadMask(image.mask, photograph.width, photograph.height,
-                                                image.upright_by_exif));
+    sums.AddMasked(ToSrgb(photograph), ReadMaskOf(image, photograph));
   }
   const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0.0; };
   facts.transparent = share(sums.transparent, sums.pixels);

@@ -174,8 +174,7 @@ TrackColors ReadTrackColors(const PosedImages& posed, double nearby,
       pixels = ReadImage(image.path, image.upright_by_exif);
       if (!image.mask.empty()) {
         // Masked pixels are excluded, whatever the mask means.
-        pixels = WithMask(pixels,
-                          ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif));
+        pixels = WithMask(pixels, ReadMaskOf(image, pixels));
       }
     } catch (const InputError&) {
       return;  // training reports and skips it

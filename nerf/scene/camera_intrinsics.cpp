@@ -1,8 +1,6 @@
 #include "nerf/scene/camera_intrinsics.h"
 
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 #include <utility>
 
 #include "nerf/base/input_error.h"
@@ -22,20 +20,6 @@ bool HasOneFocalLength(CameraModel model) {
     default:
       return false;
   }
-}
-
-ImageSize Upright(const ImageSize& stored) {
-  if (stored.orientation < 5) return stored;
-  return {stored.height, stored.width, stored.orientation};
-}
-
-bool IsScaledCopy(const Camera& camera, const ImageSize& image) {
-  if (std::int64_t{image.width} * camera.height == std::int64_t{image.height} * camera.width) {
-    return true;
-  }
-  const double factor = std::round(static_cast<double>(camera.width) / image.width);
-  return factor >= 2 && std::abs(camera.width / factor - image.width) < 1 &&
-         std::abs(camera.height / factor - image.height) < 1;
 }
 
 Camera ScaledTo(Camera camera, const ImageSize& image) {
@@ -100,9 +84,10 @@ std::optional<bool> UprightByExif(const Camera& camera, const ImageSize& stored)
 
 std::optional<FittedCamera> FitToImage(const Camera& camera, const ImageSize& stored) {
   if (const auto upright = UprightByExif(camera, stored)) return FittedCamera{camera, *upright};
-  if (IsScaledCopy(camera, stored)) return FittedCamera{ScaledTo(camera, stored), false};
+  const ImageSize size = {camera.width, camera.height};
+  if (IsScaledCopy(size, stored)) return FittedCamera{ScaledTo(camera, stored), false};
   const ImageSize upright = Upright(stored);
-  if (IsScaledCopy(camera, upright)) return FittedCamera{ScaledTo(camera, upright), true};
+  if (IsScaledCopy(size, upright)) return FittedCamera{ScaledTo(camera, upright), true};
   return std::nullopt;
 }
 

@@ -31,9 +31,8 @@ struct FittedCamera {
   bool upright_by_exif = false;
 };
 
-// The same, but the image may also be a scaled copy of the camera's: of exactly the same aspect
-// ratio, or reduced by an integer factor, truncated or rounded (1079 -> 539). Scales the intrinsics
-// to the image.
+// The same, but the image may also be a scaled copy of the camera's (IsScaledCopy). Scales the
+// intrinsics to the image.
 //   returns  nullopt where nothing fits
 std::optional<FittedCamera> FitToImage(const Camera& camera, const ImageSize& stored);
 

@@ -79,8 +79,7 @@ Photograph LoadPhotograph(const PosedImages& posed, const PosedImage& image,
         camera.height);
   }
   if (options.masks && !image.mask.empty()) {
-    ApplyMask(ReadMask(image.mask, pixels.width, pixels.height, image.upright_by_exif), image,
-              options, photograph);
+    ApplyMask(ReadMaskOf(image, pixels), image, options, photograph);
   }
   if (options.linear && pixels.encoding == ColorEncoding::kSrgb) {
     Linearize(image, camera, options.downscale, photograph);
@@ -89,17 +88,25 @@ Photograph LoadPhotograph(const PosedImages& posed, const PosedImage& image,
   return photograph;
 }
 
+Image ReadMaskOf(const PosedImage& image, const Image& pixels) {
+  const auto stored = ReadImageSize(image.path);
+  return ReadMask(image.mask, {pixels.width, pixels.height, stored ? stored->orientation : 1,
+                               image.upright_by_exif});
+}
+
 void CheckMasks(const PosedImages& posed) {
   for (const PosedImage& image : posed.images) {
     if (image.mask.empty()) continue;
     const auto mask = ReadImageSize(image.mask), photograph = ReadImageSize(image.path);
     if (!mask) throw InputError("{}: cannot be read as an image", image.mask.string());
-    if (!photograph || (mask->width == photograph->width && mask->height == photograph->height)) {
-      continue;  // a photograph that cannot be read is skipped later
+    if (!photograph) continue;  // it is skipped later
+    const ImageSize size = image.upright_by_exif ? Upright(*photograph) : *photograph;
+    if (MaskFits(*mask,
+                 {size.width, size.height, photograph->orientation, image.upright_by_exif})) {
+      continue;
     }
     throw InputError("{}: is {}x{} pixels, but its photograph is {}x{}; give a mask of that size",
-                     image.mask.string(), mask->width, mask->height, photograph->width,
-                     photograph->height);
+                     image.mask.string(), mask->width, mask->height, size.width, size.height);
   }
 }
 

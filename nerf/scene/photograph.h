@@ -28,6 +28,10 @@ struct Photograph {
 Photograph LoadPhotograph(const PosedImages& posed, const PosedImage& image,
                           const PhotographOptions& options);
 
+// The mask of a photograph as ReadMask returns it.
+//   pixels  of the photograph, in full resolution
+Image ReadMaskOf(const PosedImage& image, const Image& pixels);
+
 // Throws InputError naming the first mask whose size differs from its photograph's: better before
 // an hour of training than after it. Reads file headers only.
 void CheckMasks(const PosedImages& posed);

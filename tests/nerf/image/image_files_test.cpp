@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "nerf/image/image_io.h"
 #include "tests/support/scratch_folder.h"
 
 namespace nerf {
@@ -51,6 +52,48 @@ TEST(ImageFiles, OtherFilesHaveNoSize) {
   EXPECT_FALSE(ReadImageSize(scratch.Write("empty.jpg", "")));
   EXPECT_FALSE(ReadImageSize(scratch.Write("text.png", "hello")));
   EXPECT_FALSE(ReadImageSize(scratch.path() / "absent.png"));
+}
+
+TEST(FindImageFile, FindsOtherExtensionsAndOtherCase) {
+  const test::ScratchFolder folder;
+  for (const char* name :
+       {"a.webp", "IMG_1.JPG", "b.png", "b.exr", "c.TIFF", "d.txt", "Twice.jpg", "twice.JPG"}) {
+    folder.Write(name, "x");
+  }
+  const auto found = [&](const char* name) {
+    const auto file = FindImageFile(folder.path() / name);
+    return file ? file->filename().string() : "";
+  };
+  EXPECT_EQ(found("a"), "a.webp");
+  EXPECT_EQ(found("b"), "b.png");
+  EXPECT_EQ(found("b.exr"), "b.exr");
+  EXPECT_EQ(found("img_1.jpg"), "IMG_1.JPG");
+  EXPECT_EQ(found("img_1"), "IMG_1.JPG");
+  EXPECT_EQ(found("c"), "c.TIFF");
+  EXPECT_EQ(found("d"), "");
+  EXPECT_EQ(found("TWICE.jpg"), "");  // which of the two?
+}
+
+TEST(ImageFile, MayHaveAQuestionMarkInItsName) {
+  const test::ScratchFolder folder;
+  for (const char* name : {"why?.png", "a?b=c.jpg", "what?.exr"}) {
+    const std::filesystem::path file = folder.path() / name;
+    WriteImage(file, Image(5, 3, 3));
+    const auto size = ReadImageSize(file);
+    ASSERT_TRUE(size) << name;
+    EXPECT_EQ(size->width, 5);
+    EXPECT_EQ(ReadImage(file, true).height, 3);
+  }
+}
+
+TEST(IsScaledCopy, AllowsForTheRoundingOfBothSides) {
+  EXPECT_TRUE(IsScaledCopy({1080, 1920}, {200, 356}));
+  EXPECT_TRUE(IsScaledCopy({200, 356}, {1080, 1920}));
+  EXPECT_TRUE(IsScaledCopy({5472, 3648}, {1600, 1067}));
+  EXPECT_TRUE(IsScaledCopy({543, 961}, {136, 240}));
+  EXPECT_FALSE(IsScaledCopy({1080, 1920}, {200, 360}));
+  EXPECT_FALSE(IsScaledCopy({1080, 1920}, {1079, 1919}));  // cropped
+  EXPECT_FALSE(IsScaledCopy({1080, 1920}, {356, 200}));
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ TEST_F(ImageIo, AllEightOrientationsAreRotatedUpright) {
     for (const char c : stored) bytes.insert(bytes.end(), 3, static_cast<std::uint8_t>(c));
     WriteRaw(File("a.tif"), spec, bytes);
 
-    const ImageHeader header = ReadImageHeader(File("a.tif"));
+    const ImageSize header = ReadImageHeader(File("a.tif"));
     EXPECT_EQ(header.orientation, orientation);
     EXPECT_EQ(header.width, width);
     const Image upright = ReadImage(File("a.tif"), true);

@@ -76,5 +76,23 @@ TEST(LinearImage, OfCameraRawIsTheLinearSensorSignal) {
   }
 }
 
+// Renderers store colours that are multiplied by alpha: they are the light, also where alpha is 0.
+TEST(LinearImage, OfAnExrWithAlphaIsWhatIsStored) {
+  const test::ScratchFolder scratch;
+  const fs::path file = scratch.path() / "rendered.exr";
+  const OIIO::ImageSpec spec(3, 1, 4, OIIO::TypeFloat);
+  const std::vector<float> values = {0.2f, 0.3f, 0.4f, 0.5f, 5, 6, 7, 0, 1, 2, 3, 1};
+  auto output = OIIO::ImageOutput::create(file.string());
+  ASSERT_TRUE(output && output->open(file.string(), spec));
+  ASSERT_TRUE(output->write_image(spec.format, values.data()));
+  output->close();
+  for (const InputEncoding encoding : kAll) {
+    EXPECT_EQ(ReadLinearImage(file, encoding).pixels,
+              (std::vector<float>{0.2f, 0.3f, 0.4f, 5, 6, 7, 1, 2, 3}));
+  }
+  // Photographs have straight colours, which are composited where they are used.
+  EXPECT_EQ(ReadImage(file, false).pixels[0], 0.4f);
+}
+
 }  // namespace
 }  // namespace nerf

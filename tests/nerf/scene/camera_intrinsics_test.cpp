@@ -45,7 +45,10 @@ TEST(CameraIntrinsics, SizesReducedByAnIntegerFactorMayBeTruncatedOrRounded) {
   const Camera odd = {CameraModel::kSimplePinhole, 1079, 719, {1000, 540, 360}};
   EXPECT_TRUE(FitToImage(odd, {539, 359, 1}));
   EXPECT_TRUE(FitToImage(odd, {540, 360, 1}));
-  EXPECT_FALSE(FitToImage(odd, {538, 359, 1}));
+  EXPECT_TRUE(FitToImage(odd, {538, 359, 1}));    // 538 wide
+  EXPECT_TRUE(FitToImage(odd, {1600, 1066, 1}));  // enlarged
+  EXPECT_FALSE(FitToImage(odd, {538, 361, 1}));
+  EXPECT_FALSE(FitToImage(odd, {520, 359, 1}));
   EXPECT_FALSE(FitToImage(odd, {1078, 719, 1}));
 }
 
