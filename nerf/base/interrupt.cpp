@@ -21,4 +21,6 @@ const std::atomic<bool>& StopOnInterrupt() {
   return stop_requested;
 }
 
+const std::atomic<bool>& StopRequested() { return stop_requested; }
+
 }  // namespace nerf

@@ -8,4 +8,7 @@ namespace nerf {
 // second signal terminates it.
 const std::atomic<bool>& StopOnInterrupt();
 
+// The same flag, without that change.
+const std::atomic<bool>& StopRequested();
+
 }  // namespace nerf

@@ -15,7 +15,8 @@ namespace nerf {
 //
 //     template <class Self, class Visitor>
 //     static void Options(Self& o, Visitor&& option) {
-//       option("near_distance", o.near_distance, "scene units", AtLeast(0), "where rays begin");
+//       option("near_distance", o.near_distance, "normalized units", AtLeast(0), "where rays
+//       begin");
 //     }
 //   };
 //

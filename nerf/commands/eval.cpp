@@ -17,10 +17,10 @@
 #include "nerf/commands/threads.h"
 #include "nerf/commands/training_display.h"
 #include "nerf/image/image_io.h"
+#include "nerf/model/evaluation.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/output/contact_sheet.h"
 #include "nerf/pipeline/effect_measurement.h"
-#include "nerf/pipeline/evaluation.h"
 
 namespace nerf {
 namespace {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "nerf/model/evaluation.h"
 #include "nerf/pipeline/effect_measurement.h"
-#include "nerf/pipeline/evaluation.h"
 
 namespace nerf {
 

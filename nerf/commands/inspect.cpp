@@ -12,8 +12,8 @@
 #include "nerf/commands/threads.h"
 #include "nerf/effects/effects.h"
 #include "nerf/effects/inspection.h"
-#include "nerf/effects/inspection_picture.h"
 #include "nerf/image/image_io.h"
+#include "nerf/pipeline/inspection_picture.h"
 #include "sfm/masks.h"
 #include "sfm/photo_folder.h"
 #include "sfm/pose_input.h"
@@ -112,12 +112,11 @@ void AddInspectCommand(CLI::App& app) {
       "--picture", arguments->picture,
       "write a plot to FILE.png: the exposure of each photograph, and the colour change of points "
       "with the viewing angle, which increases for glossy surfaces");
-  command->footer(
-      EffectTable() +
-      "\nExamples:\n"
-      "  nerf inspect photos/fox/colmap --picture fox.png\n"
-      "  nerf inspect photos/fox/colmap\n"
-      "  nerf sample drift --scenario exposure && nerf inspect drift/truth/sparse");
+  command->footer(EffectTable() +
+                  "\nExamples:\n"
+                  "  nerf inspect photos/fox/colmap --picture fox.png\n"
+                  "  nerf inspect photos/fox/colmap\n"
+                  "  nerf sample drift --scenario exposure && nerf inspect drift/truth/sparse");
   command->callback([arguments] { RunInspect(*arguments); });
 }
 

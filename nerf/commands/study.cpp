@@ -50,7 +50,7 @@ void PrintFront(const nlohmann::json& results) {
 }
 
 void RunStudy(const StudyArguments& arguments) {
-  const int threads = UseThreads(arguments.threads);
+  UseThreads(arguments.threads);
   const StudyOptions& options = arguments.options;
   if (!(options.budget >= kShortestStudy && options.budget <= kLongestStudy)) {
     throw InputError("--budget: {} s; use 10m to 720h", options.budget);
@@ -64,7 +64,7 @@ void RunStudy(const StudyArguments& arguments) {
   TrainingDisplay display;
   const PipelineListener listener = [&](const PipelineEvent& event) { display(event); };
   const Config config = LoadConfig("balanced", {});
-  PreparedScene scene = PrepareScene(arguments.input, folder, config.data, threads, listener);
+  PreparedScene scene = PrepareScene(arguments.input, folder, config.data, listener);
   InspectScene(config, {}, scene, listener);
   listener(CaptureInspected{&scene.inspection, {}, scene.inspection_seconds});
   // Events of single trainings are not shown.

@@ -63,10 +63,9 @@ std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
   return assignments;
 }
 
-TrainingRequest RequestOf(const TrainArguments& arguments, int threads) {
+TrainingRequest RequestOf(const TrainArguments& arguments) {
   TrainingRequest request;
   request.run = RunFolder(arguments);
-  request.threads = threads;
   request.assignments = AssignmentsOf(arguments);
   if (arguments.resume) {
     if (!request.assignments.empty() || arguments.preset_is_given || arguments.effects != "auto") {
@@ -90,22 +89,18 @@ void RunTrain(const TrainArguments& arguments) {
     return;
   }
   const Stopwatch watch;
-  const int threads = UseThreads(arguments.threads);
-  const TrainingRequest request = RequestOf(arguments, threads);
+  UseThreads(arguments.threads);
+  TrainingRequest request = RequestOf(arguments);
   TrainingDisplay display;
-  const PipelineListener listener = [&](const PipelineEvent& event) { display(event); };
-  std::unique_ptr<TrainingSession> session;
-  if (arguments.resume) {
-    session = TrainingSession::Resume(request, watch, listener);
-  } else {
-    session = std::make_unique<TrainingSession>(request, watch, listener);
-    session->PrepareCapture();
-    session->ReadPhotographs();
-    session->DecideEffects();
-    session->PlanTimeBudget();
-  }
-  display.SetGoal(session->GetConfig().train);
-  session->Train(StopOnInterrupt());
+  const PipelineListener listener = [&](const PipelineEvent& event) {
+    // What comes before training cannot be saved, so Ctrl-C ends it at once.
+    if (std::holds_alternative<TrainingBegan>(event)) StopOnInterrupt();
+    display(event);
+  };
+  const std::unique_ptr<TrainingSession> session =
+      arguments.resume ? TrainingSession::Resume(request.run, watch, listener)
+                       : std::make_unique<TrainingSession>(std::move(request), watch, listener);
+  session->Run(StopRequested());
 }
 
 }  // namespace

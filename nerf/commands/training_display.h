@@ -13,10 +13,6 @@ class TrainingDisplay {
  public:
   void operator()(const PipelineEvent& event);
 
-  // Sets the end of the progress line: train.time_budget if there is one, else train.steps. Call
-  // before training begins.
-  void SetGoal(const TrainOptions& train) { train_ = train; }
-
  private:
   void Show(const Warning& event);
   void Show(const PosesFound& event);
@@ -27,6 +23,7 @@ class TrainingDisplay {
   void Show(const EffectsTried& event);
   void Show(const EffectsUndecided& event);
   void Show(const BudgetPlanned& event);
+  void Show(const TrainingBegan& event) { train_ = event.options; }
   void Show(const PosesRefined& event);
   void Show(const TrainingEnded& event);
   void Show(const TrainerEvent& event);

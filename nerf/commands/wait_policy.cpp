@@ -29,7 +29,12 @@ void RestartWithShortWaits(int, char** argv, char** environment) {
   std::memcpy(with_setting, environment, count * sizeof(char*));
   with_setting[count] = const_cast<char*>(kSpinCount);
   with_setting[count + 1] = nullptr;
-  execve("/proc/self/exe", argv, with_setting);
+  // Under its own path, after which the system names the process.
+  char program[4096];
+  const ssize_t length = readlink("/proc/self/exe", program, sizeof(program) - 1);
+  if (length <= 0) return;
+  program[length] = '\0';
+  execve(program, argv, with_setting);
   // If that fails, the program continues with the default.
 }
 

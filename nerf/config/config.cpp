@@ -6,6 +6,7 @@
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "nerf/config/config_overlay.h"
+#include "nerf/effects/near_plane.h"
 
 namespace nerf {
 

@@ -69,7 +69,7 @@ struct GradientScalingOptions {
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
-    option("full_distance", o.full_distance, "scene units", AtLeast(0),
+    option("full_distance", o.full_distance, "normalized units", AtLeast(0),
            "gradients of nearer samples are scaled by (t / full_distance)^2; 0: none are");
   }
 };

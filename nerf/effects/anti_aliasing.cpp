@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "nerf/base/quantile.h"
+#include "nerf/inspect/evidence.h"
+#include "nerf/inspect/verdict.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {

@@ -8,6 +8,7 @@
 #include "nerf/effects/effect.h"
 #include "nerf/geometry/rays.h"
 #include "nerf/kernels/hash_encoding.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 

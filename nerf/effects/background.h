@@ -5,6 +5,8 @@
 
 namespace nerf {
 
+struct PointShares;
+
 // Surroundings at infinity, such as a sky: a learned colour per direction behind everything else
 // (nerf/field/background.h).
 struct BackgroundOptions {

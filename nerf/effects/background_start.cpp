@@ -14,7 +14,7 @@
 namespace nerf {
 namespace {
 
-using Color = std::array<float, 3>;
+using Rgb = std::array<float, 3>;
 
 constexpr int kCoarsest = 16;                  // rows
 constexpr float kAgree = 0.06f;                // largest difference of agreeing perceptual colours
@@ -26,23 +26,23 @@ constexpr double kUsualAgreement = 0.1;        // share of the covered texels wi
 constexpr float kFaintest = 0.01f;
 
 // The median of each channel.
-Color MedianOf(const std::vector<Color>& colors) {
-  Color median;
+Rgb MedianOf(const std::vector<Rgb>& colors) {
+  Rgb median;
   std::vector<float> values(colors.size());
   for (int c = 0; c < 3; ++c) {
-    std::ranges::transform(colors, values.begin(), [c](const Color& color) { return color[c]; });
+    std::ranges::transform(colors, values.begin(), [c](const Rgb& color) { return color[c]; });
     median[c] = Median(values);
   }
   return median;
 }
 
 // The colours that photographs show in the direction of a texel: each photograph's median.
-using TexelColors = std::vector<Color>;
+using TexelColors = std::vector<Rgb>;
 
 std::vector<TexelColors> CollectTexelColors(std::span<const std::int64_t> photograph,
                                             std::span<const float> direction,
                                             std::span<const float> rgb, int rows) {
-  std::vector<std::map<std::int64_t, std::vector<Color>>> colors_of(2 * rows * rows);
+  std::vector<std::map<std::int64_t, std::vector<Rgb>>> colors_of(2 * rows * rows);
   for (std::size_t r = 0; r < photograph.size(); ++r) {
     const auto around = BackgroundMap::TexelsOf(direction.subspan(3 * r).first<3>(), rows);
     const auto nearest = std::ranges::max_element(around.weight) - around.weight.begin();
@@ -60,9 +60,9 @@ std::vector<TexelColors> CollectTexelColors(std::span<const std::int64_t> photog
 
 // A roughly perceptually uniform scale, so that one tolerance fits all colours: the logarithm of
 // linear light, which makes the comparison independent of its unit.
-Color PerceptualOf(const Color& color, ColorEncoding encoding) {
+Rgb PerceptualOf(const Rgb& color, ColorEncoding encoding) {
   constexpr float kPerFactorE = 0.3f, kBlack = 1e-6f;
-  Color perceptual = color;
+  Rgb perceptual = color;
   if (encoding == ColorEncoding::kSrgb) return perceptual;
   for (float& p : perceptual) p = kPerFactorE * std::log(std::max(p, kBlack));
   return perceptual;
@@ -70,9 +70,9 @@ Color PerceptualOf(const Color& color, ColorEncoding encoding) {
 
 // The median of the largest group of colours within kAgree of one of them; of equally large groups
 // the tightest. nullopt where no two agree.
-std::optional<Color> AgreedColor(const TexelColors& shown, ColorEncoding encoding) {
-  std::vector<Color> perceptual;
-  for (const Color& color : shown) perceptual.push_back(PerceptualOf(color, encoding));
+std::optional<Rgb> AgreedColor(const TexelColors& shown, ColorEncoding encoding) {
+  std::vector<Rgb> perceptual;
+  for (const Rgb& color : shown) perceptual.push_back(PerceptualOf(color, encoding));
   const auto distance = [&](std::size_t i, std::size_t k) {
     float largest = 0;
     for (int c = 0; c < 3; ++c) {
@@ -97,14 +97,14 @@ std::optional<Color> AgreedColor(const TexelColors& shown, ColorEncoding encodin
     closest = sum;
   }
   if (largest < kFewestAgree) return std::nullopt;
-  std::vector<Color> group;
+  std::vector<Rgb> group;
   for (std::size_t k = 0; k < shown.size(); ++k) {
     if (distance(best, k) <= kAgree) group.push_back(shown[k]);
   }
   return MedianOf(group);
 }
 
-void SetTexel(const Color& color, std::size_t texel, BackgroundMap& map) {
+void SetTexel(const Rgb& color, std::size_t texel, BackgroundMap& map) {
   for (int c = 0; c < 3; ++c) {
     const float clamped = std::clamp(color[c], kFaintest, 1 - kFaintest);
     map.raw[3 * texel + c] = map.encoding == ColorEncoding::kSrgb
@@ -122,10 +122,10 @@ void FillUnknown(std::vector<bool> known, BackgroundMap& map) {
   }
   while (!unknown.empty() && std::ssize(unknown) < rows * columns) {
     std::vector<std::int64_t> still_unknown;
-    std::vector<std::pair<std::int64_t, Color>> filled;
+    std::vector<std::pair<std::int64_t, Rgb>> filled;
     for (const std::int64_t i : unknown) {
       const std::int64_t row = i / columns, column = i % columns;
-      Color sum{};
+      Rgb sum{};
       float count = 0;
       for (const std::int64_t neighbour :
            {row * columns + (column + 1) % columns,
@@ -151,7 +151,7 @@ void FillUnknown(std::vector<bool> known, BackgroundMap& map) {
 }
 
 // The map of half the rows, interpolated at the centre of a texel, before the activation.
-Color UpsampledRaw(const BackgroundMap& coarse, std::size_t texel, int rows) {
+Rgb UpsampledRaw(const BackgroundMap& coarse, std::size_t texel, int rows) {
   const std::size_t columns = 2 * static_cast<std::size_t>(rows);
   const double row = static_cast<double>(texel / columns) + 0.5;
   const double column = static_cast<double>(texel % columns) + 0.5;
@@ -161,7 +161,7 @@ Color UpsampledRaw(const BackgroundMap& coarse, std::size_t texel, int rows) {
                                           static_cast<float>(std::sin(polar) * std::sin(longitude)),
                                           static_cast<float>(std::cos(polar))};
   const BackgroundMap::Texels around = BackgroundMap::TexelsOf(direction, coarse.rows);
-  Color raw{};
+  Rgb raw{};
   for (int k = 0; k < 4; ++k) {
     for (int c = 0; c < 3; ++c) {
       raw[c] += around.weight[k] * coarse.raw[3 * around.index[k] + c];

@@ -33,9 +33,9 @@ struct DepthSupervisionOptions {
   }
 };
 
-// Sets `points` of each training view: the points whose tracks contain the view, with at least
-// three sightings and a reprojection error of at most two pixels, at the pixel to which the view's
-// camera projects them.
+// Sets `depth_observations` of each training view: the points whose tracks contain the view, with
+// at least three sightings and a reprojection error of at most two pixels, at the pixel to which
+// the view's camera projects them.
 //   sparse  with points and tracks; its images match the views by name
 void AddSparseDepths(const PosedImages& sparse, const SceneNormalization& normalized_from_world,
                      Dataset& data);

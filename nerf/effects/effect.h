@@ -1,11 +1,12 @@
 #pragma once
 
-#include "nerf/inspect/evidence.h"
-#include "nerf/inspect/verdict.h"
-
 namespace nerf {
 
-// The description of an effect; its options and its algorithm are in the same file.
+struct CaptureEvidence;
+struct Verdict;
+
+// The description of an effect; its options and its verdict are in the same file. Where it has
+// trained parameters, its module is in field/.
 // EffectsOptions (effects.h) lists all effects.
 struct EffectDescriptor {
   const char* name;      // key in the configuration's `effects`, and in --effects

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nerf/inspect/evidence.h"
+#include "nerf/inspect/verdict.h"
+
 namespace nerf {
 namespace {
 

@@ -38,4 +38,11 @@ std::vector<float> BackgroundContribution(std::span<const float> opacity,
   return contribution;
 }
 
+void FitExposure(std::span<float> rgb, std::span<const float> opacity,
+                 std::span<const float> photograph, std::span<const float> background,
+                 ColorEncoding encoding) {
+  const std::vector<float> behind = BackgroundContribution(opacity, background);
+  ApplyGains(FitGains(rgb, photograph, behind, encoding), behind, rgb);
+}
+
 }  // namespace nerf

@@ -26,4 +26,11 @@ void ApplyGains(const std::array<float, 3>& gains, std::span<const float> backgr
 std::vector<float> BackgroundContribution(std::span<const float> opacity,
                                           std::span<const float> background);
 
+// Brings a rendering to the exposure of its photograph, which is unknown if it was held out: the
+// gains of FitGains, except for the background's contribution.
+//   rgb, photograph  [R,3]    opacity  [R]    background  [R,3], or [3] for all
+void FitExposure(std::span<float> rgb, std::span<const float> opacity,
+                 std::span<const float> photograph, std::span<const float> background,
+                 ColorEncoding encoding);
+
 }  // namespace nerf

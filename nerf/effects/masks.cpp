@@ -2,6 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "nerf/inspect/evidence.h"
+#include "nerf/inspect/verdict.h"
+
 namespace nerf {
 namespace {
 

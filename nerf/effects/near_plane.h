@@ -1,6 +1,8 @@
 #pragma once
 
-#include "nerf/effects/effect.h"
+#include "nerf/inspect/verdict.h"
+#include "nerf/scene/posed_images.h"
+#include "nerf/scene/scene_normalization.h"
 
 namespace nerf {
 

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "nerf/base/quantile.h"
+#include "nerf/inspect/evidence.h"
+#include "nerf/inspect/verdict.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {

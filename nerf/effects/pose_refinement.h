@@ -5,6 +5,7 @@
 
 #include "nerf/base/options.h"
 #include "nerf/effects/effect.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 

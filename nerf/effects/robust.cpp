@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "nerf/base/quantile.h"
+#include "nerf/inspect/evidence.h"
+#include "nerf/inspect/verdict.h"
 
 namespace nerf {
 namespace {

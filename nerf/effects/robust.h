@@ -5,6 +5,9 @@
 
 namespace nerf {
 
+struct PhotographFit;
+struct TrackColors;
+
 // A robust loss against transient objects, which only one or two photographs show: passers-by,
 // moving shadows. A ray's loss l becomes l / (1 + l / scale), so that outliers have little weight.
 // Source: Geman and McClure 1985.

@@ -3,8 +3,11 @@
 #include <optional>
 
 #include "nerf/effects/effect.h"
+#include "nerf/geometry/ball.h"
 
 namespace nerf {
+
+struct PointShares;
 
 // Surroundings at any distance, in contracted space (nerf/sampling/contraction.h). Without it rays
 // end at the unit ball around the scene, inside which nothing is contracted (RangeOfRay in

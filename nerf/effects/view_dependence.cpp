@@ -8,6 +8,8 @@
 
 #include "nerf/base/quantile.h"
 #include "nerf/inspect/angle_residuals.h"
+#include "nerf/inspect/evidence.h"
+#include "nerf/inspect/verdict.h"
 
 namespace nerf {
 namespace {

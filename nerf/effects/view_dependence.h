@@ -4,6 +4,9 @@
 
 namespace nerf {
 
+struct PhotographFit;
+struct TrackColors;
+
 // Whether colour depends on the viewing direction or not, as on a matt surface.
 enum class ColorModel { kDiffuse, kViewDependent };
 

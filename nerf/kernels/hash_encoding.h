@@ -20,12 +20,12 @@ struct HashGridOptions {
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
     option("levels", o.levels, "", Between(1, 32), "resolutions of the encoding");
-    option("features", o.features, "", OneOf({1, 2, 4, 8}), "numbers an entry of a table");
+    option("features", o.features, "", OneOf({1, 2, 4, 8}), "numbers per entry of a table");
     option("log2_table_size", o.log2_table_size, "log2 entries", Between(8, 24),
            "most entries of a level");
     option("base_resolution", o.base_resolution, "cells", Between(1, 65536),
            "along an axis of contracted space at the coarsest level");
-    option("max_resolution", o.max_resolution, "cells", Between(1, 65536), "and at the finest");
+    option("max_resolution", o.max_resolution, "cells", Between(1, 65536), "of the finest level");
   }
 };
 

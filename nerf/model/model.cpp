@@ -113,9 +113,9 @@ std::vector<std::pair<std::string, torch::Tensor>> NamedParameters(const Model& 
   };
   add("field.", *model.field);
   if (model.proposal) add("proposal.", *model.proposal);
-  if (model.background) add("background.", *model.background);
-  if (model.exposure) add("exposure.", *model.exposure);
-  if (model.pose_refinement) add("poses.", *model.pose_refinement);
+  if (model.background) add(kBackgroundEffect.parameters, *model.background);
+  if (model.exposure) add(kExposureEffect.parameters, *model.exposure);
+  if (model.pose_refinement) add(kPoseRefinementEffect.parameters, *model.pose_refinement);
   return named;
 }
 

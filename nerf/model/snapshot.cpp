@@ -26,12 +26,14 @@ RenderedView ModelSnapshot::Render(const ViewRequest& view) const {
 }
 
 std::shared_ptr<const ModelSnapshot> SnapshotSlot::Latest() {
+  was_used_ = true;
   requested_ = true;
   const std::lock_guard lock(mutex_);
   return latest_;
 }
 
 bool SnapshotSlot::IsRequested() const { return requested_; }
+bool SnapshotSlot::WasUsed() const { return was_used_; }
 
 void SnapshotSlot::Publish(std::shared_ptr<const ModelSnapshot> snapshot) {
   requested_ = false;

@@ -58,12 +58,15 @@ class SnapshotSlot {
   // Returns the latest snapshot, null before the first, and requests a newer one.
   std::shared_ptr<const ModelSnapshot> Latest();
 
-  // For the training thread: publish a snapshot if one is requested.
+  // For the training thread: publish a snapshot if one is requested, and the last one if the slot
+  // was used.
   bool IsRequested() const;
+  // Whether there ever was a request.
+  bool WasUsed() const;
   void Publish(std::shared_ptr<const ModelSnapshot> snapshot);
 
  private:
-  std::atomic<bool> requested_ = false;
+  std::atomic<bool> requested_ = false, was_used_ = false;
   mutable std::mutex mutex_;
   std::shared_ptr<const ModelSnapshot> latest_;
 };

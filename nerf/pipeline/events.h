@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <set>
 #include <string>
 #include <variant>
@@ -11,6 +12,7 @@
 #include "nerf/config/config.h"
 #include "nerf/effects/inspection.h"
 #include "nerf/field/pose_refinement.h"
+#include "nerf/model/snapshot.h"
 #include "nerf/scene/data_plan.h"
 #include "nerf/scene/dataset.h"
 #include "nerf/train/trainer.h"
@@ -28,13 +30,14 @@ struct Warning {
 struct PosesFound {
   sfm::ColmapReport report;
 };
+// Reported by worker threads, one at a time.
 struct InspectionProgress {
   std::int64_t done = 0, photographs = 0;
 };
 // The verdicts of all effects, before trials.
 struct CaptureInspected {
-  const Inspection* inspection = nullptr;
-  std::set<std::string> requested;  // effects that the user has decided
+  const Inspection* inspection = nullptr;  // valid during the call
+  std::set<std::string> requested;         // effects that the user has decided
   double seconds = 0;
 };
 // The plan for reading photographs, before they are read.
@@ -59,6 +62,11 @@ struct BudgetPlanned {
   std::string preset;
   double steps = 0;  // approximate number in the budget
 };
+// The first step follows.
+struct TrainingBegan {
+  TrainOptions options;
+  std::shared_ptr<SnapshotSlot> snapshots;  // for who wants to see the model while it trains
+};
 struct PosesRefined {
   PoseRefinementSummary summary;  // shifts in units of the input
 };
@@ -68,9 +76,10 @@ struct TrainingEnded {
   std::filesystem::path run;
 };
 
-using PipelineEvent = std::variant<Warning, PosesFound, InspectionProgress, CaptureInspected,
-                                   DataPlanned, VerdictReached, EffectsTried, EffectsUndecided,
-                                   BudgetPlanned, TrainerEvent, PosesRefined, TrainingEnded>;
+using PipelineEvent =
+    std::variant<Warning, PosesFound, InspectionProgress, CaptureInspected, DataPlanned,
+                 VerdictReached, EffectsTried, EffectsUndecided, BudgetPlanned, TrainingBegan,
+                 TrainerEvent, PosesRefined, TrainingEnded>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // A listener that ignores all events.

@@ -8,6 +8,7 @@
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/effects/depth_supervision.h"
 #include "nerf/model/run_folder.h"
@@ -41,13 +42,13 @@ fs::path ImageFolder(const PosedImage& image) {
   return folder;
 }
 
-PosedImages FindPoses(const fs::path& input, const fs::path& folder, int threads,
+PosedImages FindPoses(const fs::path& input, const fs::path& folder,
                       const PipelineListener& listener) {
   const sfm::InputLocation location = sfm::FindInput(input);
   PosedImages posed;
   if (location.kind == sfm::InputKind::kPhotos) {
     sfm::ColmapOptions colmap;
-    colmap.threads = threads;
+    colmap.threads = NumThreads();
     PosesFound found;
     posed = sfm::PosesFromPhotos(location.images, ColmapPath(folder), colmap, &found.report);
     if (!found.report.skipped.empty()) {
@@ -80,10 +81,9 @@ std::vector<double> PreparedScene::StopsOf(const std::vector<View>& train) const
 }
 
 PreparedScene PrepareScene(const fs::path& input, const fs::path& folder,
-                           const DataOptions& options, int threads,
-                           const PipelineListener& listener) {
+                           const DataOptions& options, const PipelineListener& listener) {
   PreparedScene scene;
-  scene.posed = FindPoses(input, folder, threads, listener);
+  scene.posed = FindPoses(input, folder, listener);
   ReportMissing(scene.posed, listener);
   AssignSplits(scene.posed, options);
   scene.normalized_from_world = NormalizeScene(scene.posed);

@@ -26,11 +26,9 @@ struct PreparedScene {
 
 // Reads the poses of the input, or finds them with COLMAP in `folder`/colmap for plain photographs;
 // assigns splits and normalizes the scene.
-//   threads  for COLMAP; 0: all cores
 // Throws InputError.
 PreparedScene PrepareScene(const std::filesystem::path& input, const std::filesystem::path& folder,
-                           const DataOptions& options, int threads,
-                           const PipelineListener& listener);
+                           const DataOptions& options, const PipelineListener& listener);
 
 // Inspects the capture. If the scene is bounded, changes the normalized frame.
 //   requested  effects that the user has decided, as in `config`

@@ -80,7 +80,7 @@ void TrainingSession::PrepareCapture() {
   config_ = ConfigWithDecisions(request_.preset);
   CheckRunFolder();
   sfm::FindInput(request_.input);  // fails before a run folder is created
-  scene_ = PrepareScene(request_.input, request_.run, config_.data, request_.threads, listener_);
+  scene_ = PrepareScene(request_.input, request_.run, config_.data, listener_);
   RequireValidation();
   if (request_.effects.inspect) {
     const auto requested = NamedEffects(request_.preset, request_.assignments);
@@ -139,6 +139,7 @@ void TrainingSession::PlanTimeBudget() {
 }
 
 TrainSummary TrainingSession::Train(const std::atomic<bool>& stop) {
+  listener_(TrainingBegan{config_.train, trainer_->Snapshots()});
   const TrainSummary summary =
       trainer_->Run(stop, [this](const TrainerEvent& event) { listener_(event); });
   ReportRefinedPoses();
@@ -168,12 +169,13 @@ void TrainingSession::ReportRefinedPoses() const {
   sfm::WriteTransformsJson(RefinedPoses(model, posed_), RefinedPosesPath(request_.run));
 }
 
-std::unique_ptr<TrainingSession> TrainingSession::Resume(TrainingRequest request,
+std::unique_ptr<TrainingSession> TrainingSession::Resume(const fs::path& run,
                                                          const Stopwatch& watch,
                                                          PipelineListener listener) {
+  TrainingRequest request;
+  request.run = run;
   auto session = std::make_unique<TrainingSession>(std::move(request), watch, std::move(listener));
   TrainingSession& s = *session;
-  const fs::path& run = s.request_.run;
   const Checkpoint checkpoint = ReadRunCheckpoint(run);
   const Model model = ModelFromCheckpoint(checkpoint);
   const int threads = NumThreads();

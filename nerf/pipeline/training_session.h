@@ -25,35 +25,34 @@ struct TrainingRequest {
   bool preset_is_given = false;          // otherwise a time budget chooses the preset
   std::vector<std::string> assignments;  // "block.key=value"
   EffectsRequest effects;
-  int threads = 0;  // 0: all cores
 };
 
-// The whole of `nerf train`, from an input to a trained run. Reports events in the calling thread.
+// The whole of `nerf train`, from an input to a trained run. Reports events one at a time, in the
+// calling thread, but for InspectionProgress, which comes from worker threads.
 class TrainingSession {
  public:
   //   watch  started with the command: the time budget includes what came before this session
   TrainingSession(TrainingRequest request, const Stopwatch& watch, PipelineListener listener);
-  // Resumes a run. Only `run` and `threads` of the request are used.
-  static std::unique_ptr<TrainingSession> Resume(TrainingRequest request, const Stopwatch& watch,
-                                                 PipelineListener listener);
+  TrainingSession(const TrainingSession&) = delete;  // the trainer has a reference to the data
+  TrainingSession& operator=(const TrainingSession&) = delete;
+  // Resumes a run.
+  static std::unique_ptr<TrainingSession> Resume(const std::filesystem::path& run,
+                                                 const Stopwatch& watch, PipelineListener listener);
 
-  // The stages, in order.
+  // Runs to the end, or until `stop` is set. Once. Throws InputError, NonFiniteError.
+  TrainSummary Run(const std::atomic<bool>& stop);
+
+  // The configuration with the decisions so far.
+  const Config& GetConfig() const { return config_; }
+
+ private:
+  // The stages, in order; a resumed run has only the last.
   void PrepareCapture();  // poses, splits, inspection; writes config.json and transforms.json
   void ReadPhotographs();
   void DecideEffects();  // runs trials for inconclusive effects
   void PlanTimeBudget();
   TrainSummary Train(const std::atomic<bool>& stop);
 
-  // All stages; after Resume or PlanTimeBudget, only Train. Throws InputError, NonFiniteError.
-  TrainSummary Run(const std::atomic<bool>& stop);
-
-  // The configuration with the decisions so far.
-  const Config& GetConfig() const { return config_; }
-  const PreparedScene& Scene() const { return scene_; }
-  // Only after PlanTimeBudget or Resume.
-  Trainer& GetTrainer() { return *trainer_; }
-
- private:
   Config ConfigWithDecisions(const std::string& preset) const;
   void WriteConfig() const;
   void CheckRunFolder() const;

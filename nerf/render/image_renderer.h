@@ -13,7 +13,7 @@ namespace nerf {
 struct RenderedView {
   Image rgb;      // 3 channels
   Image opacity;  // 1 channel, [0,1]
-  Image depth;    // 1 channel, distance along the ray in normalized scene units, 0 where undefined
+  Image depth;    // 1 channel, distance along the ray in normalized units, 0 where undefined
   std::int64_t samples = 0;  // points at which the field was evaluated
   StageSeconds seconds;
 };

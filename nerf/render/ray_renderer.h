@@ -12,7 +12,7 @@ namespace nerf {
 struct RenderOutput {
   std::vector<float> rgb;      // [R,3] in the encoding of the field
   std::vector<float> opacity;  // [R] in [0,1]
-  std::vector<float> depth;    // [R] expected distance, normalized scene units, in [near, far];
+  std::vector<float> depth;    // [R] expected distance, normalized units, in [near, far];
                                // 0 where opacity is 0, where it is undefined
   std::int64_t samples = 0;    // points at which the field was evaluated
   StageSeconds seconds;        // 0 if the renderer does not time its stages

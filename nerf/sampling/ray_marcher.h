@@ -32,7 +32,7 @@ struct MarchOptions {
   double far_distance = 100.0;
   int steps_per_unit = 128;
   double stop_transmittance = 1e-4;
-  // What effects.unbounded says: whether there is anything outside the unit ball.
+  // Whether there is anything outside the unit ball; set from effects.unbounded.
   bool unbounded = true;
 
   // What single ranges cannot say. Throws InputError.
@@ -43,8 +43,9 @@ struct MarchOptions {
   static void Options(Self& o, Visitor&& option) {
     option("sampler", o.sampler,
            "what places samples: the occupancy grid, a proposal network, or by alpha");
-    option("near_distance", o.near_distance, "scene units", Between(0, 1e8), "where rays begin");
-    option("far_distance", o.far_distance, "scene units", Between(0, 1e8), "and where they end");
+    option("near_distance", o.near_distance, "normalized units", Between(0, 1e8),
+           "where rays begin");
+    option("far_distance", o.far_distance, "normalized units", Between(0, 1e8), "where rays end");
     option("steps_per_unit", o.steps_per_unit, "steps", Between(1, 4096),
            "of the grid's march in a unit of contracted space");
     option("stop_transmittance", o.stop_transmittance, "", StrictlyBetween(0, 1),

@@ -12,9 +12,10 @@
 #include "nerf/base/processor_name.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/image/image_io.h"
+#include "nerf/model/evaluation.h"
+#include "nerf/model/refined_poses.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/effect_decisions.h"
-#include "nerf/pipeline/evaluation.h"
 #include "nerf/study/crop.h"
 #include "nerf/study/pareto.h"
 #include "nerf/train/trainer.h"
@@ -65,7 +66,10 @@ Study::Study(PreparedScene scene, const StudyOptions& options, fs::path folder,
       folder_(std::move(folder)),
       listener_(std::move(listener)),
       settings_(StudySettings(options.downscale)) {
-  const std::vector<const PosedImage*> all = ImagesOf(scene_.posed, Split::kTest);
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < scene_.posed.images.size(); ++i) {
+    if (scene_.posed.images[i].split == Split::kTest) all.push_back(i);
+  }
   const std::string source = scene_.posed.source.string();
   if (all.empty()) {
     throw InputError("{}: a study needs held-out photographs; use at least 8 photographs", source);
@@ -74,7 +78,7 @@ Study::Study(PreparedScene scene, const StudyOptions& options, fs::path folder,
   json names = json::array();
   for (std::size_t i = 0; i < count; ++i) {
     held_out_.push_back(all[i * all.size() / count]);
-    names.push_back(held_out_.back()->name);
+    names.push_back(scene_.posed.images[held_out_.back()].name);
   }
   results_ = {{"input", source},
               {"processor", ProcessorName()},
@@ -96,6 +100,11 @@ void Study::ReadEarlierResults() {
                        JsonPath(folder_).string(), key);
     }
   }
+  if (!before.contains("effects") && !before.value("settings", json::array()).empty()) {
+    throw InputError(
+        "{}: is of an earlier version, which did not decide effects; choose another folder with -o",
+        JsonPath(folder_).string());
+  }
   results_ = before;
   decided_ = results_.value("effects", std::vector<std::string>());
 }
@@ -106,8 +115,10 @@ Study::Photographs& Study::Read(const Config& config) {
   Photographs& photographs = found->second;
   if (!is_new) return photographs;
   const Stopwatch watch;
-  photographs.data = LoadDataset(scene_.posed, config.data, MeaningOf(config.effects.masks),
-                                 scene_.normalized_from_world);
+  Config without_depth = config;  // whose points are in the folder of a run
+  without_depth.effects.depth_supervision.reset();
+  photographs.data =
+      LoadPhotographs(scene_.posed, without_depth, scene_.normalized_from_world, {}, listener_);
   AddSparseDepths(scene_.posed, scene_.normalized_from_world, photographs.data);
   photographs.facts = FactsOf(photographs.data, scene_.normalized_from_world);
   photographs.facts.exposure_stops = scene_.StopsOf(photographs.data.train);
@@ -140,20 +151,25 @@ Config Study::ConfigOf(const StudySetting& setting, double seconds) const {
 
 // The value of the key "qualities" of a setting: PSNR, SSIM and seconds per frame at each rendering
 // quality. Also writes the setting's crop.
-json Study::EvaluateQualities(const ModelSnapshot& model, const std::string& name) const {
+json Study::EvaluateQualities(const ModelSnapshot& model, const std::string& name) {
+  const PosedImages posed = RefinedPoses(model.GetModel(), scene_.posed);
+  std::vector<const PosedImage*> images;
+  for (const std::size_t i : held_out_) images.push_back(&posed.images[i]);
   json qualities = json::array();
   for (const double quality : kQualities) {
     // A barely trained field can take minutes per frame.
     if (quality < 1 && qualities[0]["seconds_per_frame"] > kSlowestFrame) break;
-    const Evaluation evaluation =
-        Evaluate(model, scene_.posed, held_out_, {quality, false, options_.downscale},
-                 [&](const EvaluatedView& view) {
-                   if (quality != 1 || view.image != held_out_.front()) return;
-                   const Patch patch = MostDetailedPatch(*view.truth);
-                   MakeOutputFolder(folder_ / "crops");
-                   WriteImage(folder_ / "crops" / (name + ".png"), Crop(*view.rendering, patch));
-                   WriteImage(folder_ / "crops" / "truth.png", Crop(*view.truth, patch));
-                 });
+    const Evaluation evaluation = Evaluate(
+        model, posed, images, {quality, false, options_.downscale}, [&](const EvaluatedView& view) {
+          if (quality != 1 || view.image != images.front()) return;
+          const Patch patch = MostDetailedPatch(*view.truth);
+          MakeOutputFolder(folder_ / "crops");
+          WriteImage(folder_ / "crops" / (name + ".png"), Crop(*view.rendering, patch));
+          WriteImage(folder_ / "crops" / "truth.png", Crop(*view.truth, patch));
+        });
+    for (const std::string& reason : evaluation.unreadable) {
+      if (reported_.insert(reason).second) listener_(Warning{reason});
+    }
     if (evaluation.scores.empty()) throw InputError("{}", evaluation.unreadable.front());
     const ViewScore mean = evaluation.Mean();
     qualities.push_back({{"quality", quality},
@@ -219,7 +235,10 @@ bool Study::Run(const std::atomic<bool>& stop,
                 const std::function<void(std::size_t, const StudySetting&, double)>& on_begin) {
   const double spent_before = results_["spent_seconds"];
   const Stopwatch watch;
-  if (decided_.empty()) DecideEffects();
+  if (!results_.contains("effects")) {
+    DecideEffects();
+    Save();
+  }
   double overhead = kFirstOverhead;
   for (std::size_t next = results_["settings"].size(); next < settings_.size(); ++next) {
     const double left = options_.budget - spent_before - watch.Seconds();

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ class Study {
   // Throws InputError if no photograph is held out, or the folder contains another study.
   Study(PreparedScene scene, const StudyOptions& options, std::filesystem::path folder,
         PipelineListener listener);
+  Study(const Study&) = delete;
+  Study& operator=(const Study&) = delete;
 
   // Runs until all settings are done or `stop` is set. Returns whether all are done.
   //   on_begin  called before each setting with its number, the setting and its training seconds
@@ -54,7 +57,7 @@ class Study {
   Config ConfigOf(const StudySetting& setting, double seconds) const;
   nlohmann::json Measure(const StudySetting& setting, double seconds,
                          const std::atomic<bool>& stop);
-  nlohmann::json EvaluateQualities(const ModelSnapshot& model, const std::string& name) const;
+  nlohmann::json EvaluateQualities(const ModelSnapshot& model, const std::string& name);
   Photographs& Read(const Config& config);
   void MarkFronts();
   void Save() const;
@@ -64,9 +67,10 @@ class Study {
   std::filesystem::path folder_;
   PipelineListener listener_;
   std::vector<StudySetting> settings_;
-  std::vector<const PosedImage*> held_out_;  // points into scene_
-  std::map<int, Photographs> photographs_;   // by downscale
-  std::vector<std::string> decided_;         // assignments of effects, "effects.NAME=..."
+  std::vector<std::size_t> held_out_;       // indices of images
+  std::map<int, Photographs> photographs_;  // by downscale
+  std::vector<std::string> decided_;        // assignments of effects, "effects.NAME=..."
+  std::set<std::string> reported_;          // photographs that could not be read
   nlohmann::json results_;
 };
 

@@ -26,7 +26,7 @@ Trainer::~Trainer() = default;
 
 const Model& Trainer::GetModel() const { return state_->model; }
 
-SnapshotSlot& Trainer::Snapshots() { return state_->snapshots; }
+const std::shared_ptr<SnapshotSlot>& Trainer::Snapshots() const { return state_->snapshots; }
 
 double Trainer::ValidationPsnrAtOwnExposure() const {
   return state_->validation.Psnr(state_->model, true);
@@ -54,7 +54,7 @@ TrainSummary Trainer::Run(const std::atomic<bool>& stop, const TrainerListener& 
     const auto rays = static_cast<double>(s.rays_per_batch);
     const StepResult result = s.Step();
     finished = s.Finished();
-    if (s.snapshots.IsRequested()) s.snapshots.Publish(ModelSnapshot::Copy(s.model, s.step));
+    if (s.snapshots->IsRequested()) s.snapshots->Publish(ModelSnapshot::Copy(s.model, s.step));
 
     LapTimer timer;
     const bool validates = finished || s.step % options.validate_every == 0;
@@ -78,6 +78,8 @@ TrainSummary Trainer::Run(const std::atomic<bool>& stop, const TrainerListener& 
                      rays / (s.training_seconds - before), &metrics.Curve()});
   }
   if (!finished) s.Save();
+  // For viewers that stay: nothing will answer their requests any more.
+  if (s.snapshots->WasUsed()) s.snapshots->Publish(ModelSnapshot::Copy(s.model, s.step));
   return {finished,          s.step,         s.training_seconds, s.validation_psnr,
           s.ReachedTarget(), metrics.Curve()};
 }

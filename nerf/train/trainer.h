@@ -68,8 +68,9 @@ class Trainer {
   // whether the model simulates exposures or not. Needs validation photographs.
   double ValidationPsnrAtOwnExposure() const;
 
-  // Snapshots of the model during training, for any thread.
-  SnapshotSlot& Snapshots();
+  // Snapshots of the model during training, for any thread; it outlives the trainer. Its last one,
+  // if any was requested, is of the last step.
+  const std::shared_ptr<SnapshotSlot>& Snapshots() const;
 
   // The current model; only for the training thread.
   const Model& GetModel() const;

@@ -44,7 +44,7 @@ struct Trainer::State {
 
   Model model;
   std::unique_ptr<Engine> engine;  // has a reference to the model
-  SnapshotSlot snapshots;
+  std::shared_ptr<SnapshotSlot> snapshots = std::make_shared<SnapshotSlot>();
   const Dataset& data;
   std::filesystem::path run;
   PixelSampler sampler;

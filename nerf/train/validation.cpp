@@ -17,25 +17,24 @@ namespace {
 
 constexpr std::int64_t kRays = 8192;
 
-// Multiplies each photograph's rays by the gains that fit it.
+// Brings each photograph's rays to its exposure.
 void FitExposures(RenderOutput& out, const TargetBatch& truth, ColorEncoding encoding) {
   std::map<std::int64_t, std::vector<std::size_t>> rays_of;
   for (std::size_t r = 0; r < truth.photograph.size(); ++r) {
     rays_of[truth.photograph[r]].push_back(r);
   }
-  const std::vector<float> all_background =
-      BackgroundContribution(out.opacity, truth.rays.background);
   for (const auto& [photograph, rays] : rays_of) {
-    std::vector<float> rendered, shown, background;
+    std::vector<float> rendered, shown, background, opacity;
     const auto append = [](std::size_t r, const std::vector<float>& from, std::vector<float>& to) {
       to.insert(to.end(), &from[3 * r], &from[3 * r] + 3);
     };
     for (const std::size_t r : rays) {
       append(r, out.rgb, rendered);
       append(r, truth.rgb, shown);
-      append(r, all_background, background);
+      append(r, truth.rays.background, background);
+      opacity.push_back(out.opacity[r]);
     }
-    ApplyGains(FitGains(rendered, shown, background, encoding), background, rendered);
+    FitExposure(rendered, opacity, shown, background, encoding);
     for (std::size_t k = 0; k < rays.size(); ++k) {
       std::copy_n(&rendered[3 * k], 3, &out.rgb[3 * rays[k]]);
     }

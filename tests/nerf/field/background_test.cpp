@@ -57,6 +57,26 @@ TEST(BackgroundMap, InterpolatesFourTexelsWithWeightsThatSumToOne) {
   }
 }
 
+TEST(BackgroundMap, AtTheCentreOfATexelIsThatTexel) {
+  const int rows = kSmall.resolution;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < 2 * rows; ++column) {
+      const double polar = (row + 0.5) / rows * std::numbers::pi;
+      const double longitude = ((column + 0.5) / rows - 1) * std::numbers::pi;
+      const std::array<float, 3> direction = {
+          static_cast<float>(std::sin(polar) * std::cos(longitude)),
+          static_cast<float>(std::sin(polar) * std::sin(longitude)),
+          static_cast<float>(std::cos(polar))};
+      const auto texels = BackgroundMap::TexelsOf(direction, rows);
+      float weight = 0;
+      for (int k = 0; k < 4; ++k) {
+        if (texels.index[k] == row * 2 * rows + column) weight += texels.weight[k];
+      }
+      EXPECT_NEAR(weight, 1, 1e-5) << row << " " << column;
+    }
+  }
+}
+
 TEST(BackgroundMap, HasNoSeam) {
   const auto map = SomeBackground(ColorEncoding::kSrgb)->Map();
   std::vector<float> rgb(6);

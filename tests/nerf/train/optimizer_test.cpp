@@ -36,6 +36,19 @@ TEST(Adam, EqualsLibTorchsAdam) {
   }
 }
 
+TEST(Adam, AStepIsProportionalToTheLearningRateFactor) {
+  const auto change = [](double factor) {
+    torch::Tensor weight = torch::ones({3, 2}).requires_grad_();
+    Adam adam({{"weight", weight}}, OptimizerOptions());
+    weight.sum().backward();
+    adam.Step(factor);
+    return (1 - weight).mean().item<double>();
+  };
+  EXPECT_NEAR(change(1), OptimizerOptions().learning_rate, 1e-6);
+  EXPECT_NEAR(change(0.25), 0.25 * change(1), 1e-6);
+  EXPECT_EQ(change(0), 0);
+}
+
 // An entry without a gradient in some steps is updated as if these steps had not happened.
 TEST(Adam, EachEntryOfATableCountsItsOwnSteps) {
   for (const int features : {1, 2, 4, 8}) {

@@ -42,7 +42,7 @@ TEST(ModelSnapshot, RendersConsistentlyFromFourThreadsDuringTraining) {
     std::atomic<bool> finished = false;
     const auto view_snapshots = [&] {
       while (!finished) {
-        const auto snapshot = trainer.Snapshots().Latest();
+        const auto snapshot = trainer.Snapshots()->Latest();
         if (!snapshot) continue;
         const RenderedView view = snapshot->Render(FirstView(small));
         const std::lock_guard lock(mutex);
@@ -65,6 +65,28 @@ TEST(ModelSnapshot, RendersConsistentlyFromFourThreadsDuringTraining) {
     for (const auto& picture : seen) EXPECT_EQ(picture, expected) << "step " << of_step;
   }
   SetNumThreads(AvailableCores());
+}
+
+TEST(SnapshotSlot, HasTheLastStepAfterTheTrainingEnds) {
+  const test::SmallCapture small = test::MakeSmallCapture(10, 24, 18);
+  const test::ScratchFolder run;
+  std::shared_ptr<SnapshotSlot> slot;
+  {
+    Trainer trainer(EveryModule(20), small.scene, small.data, run.path());
+    slot = trainer.Snapshots();
+    EXPECT_EQ(slot->Latest(), nullptr);
+    trainer.Run(test::never_stop);
+  }
+  ASSERT_NE(slot->Latest(), nullptr);
+  EXPECT_EQ(slot->Latest()->Step(), 20);
+}
+
+TEST(SnapshotSlot, CopiesNothingWithoutARequest) {
+  const test::SmallCapture small = test::MakeSmallCapture(10, 24, 18);
+  const test::ScratchFolder run;
+  Trainer trainer(EveryModule(20), small.scene, small.data, run.path());
+  trainer.Run(test::never_stop);
+  EXPECT_EQ(trainer.Snapshots()->Latest(), nullptr);
 }
 
 TEST(ModelSnapshot, DoesNotChangeDuringTraining) {

@@ -169,8 +169,6 @@ TEST(Trainer, TimedStagesSumToAtMostTheTimeOfTheSteps) {
       timed += seconds;
     }
     EXPECT_LE(timed, 1.001 * json["seconds"].get<double>());
-    EXPECT_NEAR(timed + json["stage_seconds"]["other"].get<double>(), json["seconds"].get<double>(),
-                1e-3 * timed);
     EXPECT_GE(json["samples_skipped"].get<double>(), 0);
     EXPECT_LT(json["samples_skipped"].get<double>(), 1);
     EXPECT_GT(json["peak_megabytes"].get<double>(), 10);

@@ -64,7 +64,7 @@ std::vector<const PosedImage*> ImagesOf(const PosedImages& posed, Split split);
 
 // Renders the views of photographs and scores them as they would be saved (8-bit sRGB). Used by
 // `nerf eval` and `nerf study`.
-//   posed   from OpenRun or the training
+//   posed   with refined poses, if the model has them (OpenRun, RefinedPoses)
 //   images  point into `posed`
 // Throws InputError if quality is not in [0, 1].
 Evaluation Evaluate(const ModelSnapshot& model, const PosedImages& posed,

@@ -1,4 +1,4 @@
-#include "nerf/effects/inspection_picture.h"
+#include "nerf/pipeline/inspection_picture.h"
 
 #include <spdlog/fmt/fmt.h>
 

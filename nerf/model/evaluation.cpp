@@ -1,4 +1,4 @@
-#include "nerf/pipeline/evaluation.h"
+#include "nerf/model/evaluation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,16 +13,6 @@
 
 namespace nerf {
 namespace {
-
-// Multiplies a view by the gains that fit it to its photograph, whose exposure is unknown if it was
-// held out.
-void FitExposure(const Image& truth, const Eigen::Vector3f& background, RenderedView& view) {
-  const Image shown = view.rgb.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
-  const std::vector<float> behind =
-      BackgroundContribution(view.opacity.pixels, {background.data(), 3});
-  std::vector<float>& rgb = view.rgb.pixels;
-  ApplyGains(FitGains(rgb, shown.pixels, behind, view.rgb.encoding), behind, rgb);
-}
 
 // Replaces the pixels of the rendering that a mask ignores by those of the photograph.
 //   whole    pixels that are not ignored; empty: all
@@ -94,7 +84,11 @@ Evaluation Evaluate(const ModelSnapshot& model, const PosedImages& posed,
                    background, scene.encoding);
     const double seconds = watch.Seconds();
     evaluation.cost.Add(view);
-    if (evaluation.exposure_fitted) FitExposure(truth, background, view);
+    if (evaluation.exposure_fitted) {
+      const Image shown = view.rgb.encoding == ColorEncoding::kLinear ? ToLinear(truth) : truth;
+      FitExposure(view.rgb.pixels, view.opacity.pixels, shown.pixels, {background.data(), 3},
+                  view.rgb.encoding);
+    }
     const double of_ignored = IgnoreMasked(photograph.valid_pixels, truth, view.rgb);
     const ViewScore& score = evaluation.scores.emplace_back(
         image->name, Psnr(truth, view.rgb) - of_ignored, Ssim(truth, view.rgb), seconds);

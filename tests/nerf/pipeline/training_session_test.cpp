@@ -1,0 +1,119 @@
+#include "nerf/pipeline/training_session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "nerf/base/atomic_file.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/synthetic/sample_folder.h"
+#include "tests/support/input_error_of.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/tiny_training.h"
+
+namespace nerf {
+namespace {
+
+using testing::ElementsAre;
+
+// The names of the first event of each kind, in order; warnings and progress are left out.
+class EventNames {
+ public:
+  void operator()(const PipelineEvent& event) {
+    const char* name = std::visit([this](const auto& e) { return NameOf(e); }, event);
+    if (name && std::ranges::find(names, std::string(name)) == names.end()) names.push_back(name);
+  }
+
+  std::vector<std::string> names;
+  std::vector<std::string> undecided;
+  std::shared_ptr<SnapshotSlot> snapshots;
+  std::int64_t steps = 0;
+
+ private:
+  template <class Event>
+  const char* NameOf(const Event&) {
+    return nullptr;
+  }
+  const char* NameOf(const CaptureInspected&) { return "inspected"; }
+  const char* NameOf(const DataPlanned&) { return "planned"; }
+  const char* NameOf(const EffectsUndecided& event) {
+    undecided = event.effects;
+    return "undecided";
+  }
+  const char* NameOf(const TrainingBegan& event) {
+    snapshots = event.snapshots;
+    snapshots->Latest();  // as a viewer does that is connected
+    return "began";
+  }
+  const char* NameOf(const TrainerEvent& event) {
+    if (const auto* step = std::get_if<StepTaken>(&event)) steps = step->step;
+    return "step";
+  }
+  const char* NameOf(const TrainingEnded&) { return "ended"; }
+};
+
+class TrainingSessionTest : public testing::Test {
+ protected:
+  TrainingSessionTest() {
+    synthetic::SampleOptions options;
+    options.views = 9;
+    options.width = 32;
+    options.height = 24;
+    options.samples_per_pixel = 1;
+    synthetic::WriteSample(folder_.path() / "sample", options);
+    request_.input = folder_.path() / "sample/truth/transforms.json";
+    request_.run = folder_.path() / "run";
+    request_.assignments = {"train.steps=20", "encoding.log2_table_size=12",
+                            "field.hidden_width=16", "train.max_rays_per_batch=256"};
+  }
+
+  test::ScratchFolder folder_;
+  TrainingRequest request_;
+};
+
+TEST_F(TrainingSessionTest, ReportsItsStagesInOrder) {
+  EventNames events;
+  TrainingSession session(request_, Stopwatch(), [&](const PipelineEvent& e) { events(e); });
+  const TrainSummary summary = session.Run(test::never_stop);
+  EXPECT_TRUE(summary.finished);
+  EXPECT_EQ(events.steps, 20);
+  EXPECT_THAT(events.names,
+              ElementsAre("inspected", "planned", "undecided", "began", "step", "ended"));
+  ASSERT_TRUE(events.snapshots);
+  ASSERT_NE(events.snapshots->Latest(), nullptr);
+  EXPECT_EQ(events.snapshots->Latest()->Step(), 20);
+  EXPECT_EQ(OpenRun(request_.run).model->Step(), 20);
+}
+
+TEST_F(TrainingSessionTest, ResumesWhatWasStopped) {
+  std::atomic<bool> stop = false;
+  TrainingSession session(request_, Stopwatch(), [&](const PipelineEvent& event) {
+    const auto* of_trainer = std::get_if<TrainerEvent>(&event);
+    const auto* step = of_trainer ? std::get_if<StepTaken>(of_trainer) : nullptr;
+    if (step && step->step == 8) stop = true;
+  });
+  EXPECT_FALSE(session.Run(stop).finished);
+  EventNames events;
+  const auto resumed = TrainingSession::Resume(request_.run, Stopwatch(),
+                                               [&](const PipelineEvent& e) { events(e); });
+  EXPECT_TRUE(resumed->Run(test::never_stop).finished);
+  EXPECT_EQ(events.steps, 20);
+  EXPECT_THAT(events.names, ElementsAre("planned", "began", "step", "ended"));
+}
+
+// The user's decisions stand, and a second run does not overwrite the first.
+TEST_F(TrainingSessionTest, KeepsWhatTheUserDecided) {
+  request_.effects.choices = {{&kRobustEffect, true}, {&kViewDependenceEffect, false}};
+  TrainingSession session(request_, Stopwatch(), IgnoreEvents);
+  session.Run(test::never_stop);
+  const Config& config = session.GetConfig();
+  EXPECT_TRUE(config.effects.robust);
+  EXPECT_FALSE(config.effects.view_dependence);
+  TrainingSession again(request_, Stopwatch(), IgnoreEvents);
+  EXPECT_THAT(test::InputErrorOf([&] { again.Run(test::never_stop); }),
+              testing::HasSubstr("already contains a run"));
+}
+
+}  // namespace
+}  // namespace nerf
