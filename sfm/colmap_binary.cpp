@@ -19,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "COLMAP's files are little-endian");
 
 // Smallest possible size of each record, in bytes.
-constexpr std::size_t kCameraBytes = 4 + 4 + 8 + 8 + 3 * 8;
+constexpr std::size_t kCameraBytes = 4 + 4 + 8 + 8 + 2 * 8;  // EQUIRECTANGULAR, COLMAP 4.1
 constexpr std::size_t kImageBytes = 4 + 7 * 8 + 4 + 1 + 8;
 constexpr std::size_t kPoint2dBytes = 3 * 8;
 constexpr std::size_t kPointBytes = 8 + 3 * 8 + 3 + 8 + 8;
@@ -99,7 +99,7 @@ CameraMap ReadCamerasBinary(const fs::path& file) {
     const std::string where = fmt::format("{}: camera {}", file.string(), id);
     const int model_id = reader.Read<std::int32_t>();
     const auto model = CameraModelFromId(model_id);
-    if (!model) throw InputError("{}: unknown camera model {}", where, model_id);
+    if (!model) throw InputError("{}: {}", where, UnsupportedLens(std::to_string(model_id)));
     Camera camera{*model, 0, 0, {}};
     const auto width = reader.Read<std::uint64_t>();
     const auto height = reader.Read<std::uint64_t>();

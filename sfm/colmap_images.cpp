@@ -10,6 +10,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/quantile.h"
+#include "nerf/image/oiio_files.h"
 
 namespace nerf::sfm {
 namespace {
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 bool ColmapCanUse(const Photo& photo) {
   const bool format_known =
       photo.format == "jpeg" || photo.format == "png" || photo.format == "bmp";
-  return format_known && photo.eight_bit && photo.orientation == 1;
+  return format_known && photo.eight_bit && photo.orientation == 1 && !photo.cropped_after_exif;
 }
 
 // Scales linear radiance of any unit to the range of a photograph and applies the sRGB transfer.
@@ -62,11 +63,19 @@ OIIO::ImageBuf Upright(const OIIO::ImageBuf& stored, int orientation) {
 }
 
 void WriteConverted(const Photo& photo, const fs::path& target) {
-  OIIO::ImageBuf source(photo.path.string());
-  if (!source.read(0, 0, true, OIIO::TypeFloat)) {
-    throw InputError("{}: {}", photo.path.string(), source.geterror());
+  const auto input = OpenImageInput(photo.path);
+  if (!input) throw InputError("{}: {}", photo.path.string(), OIIO::geterror());
+  OIIO::ImageSpec spec = input->spec();
+  const bool linear = spec.format.is_floating_point();
+  spec.set_format(OIIO::TypeFloat);
+  if (photo.cropped_after_exif) {
+    spec.erase_attribute("Exif:.*");
+    spec.erase_attribute("FocalLength");
   }
-  const bool linear = source.nativespec().format.is_floating_point();
+  OIIO::ImageBuf source(spec);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, source.localpixels())) {
+    throw InputError("{}: {}", photo.path.string(), input->geterror());
+  }
   const std::vector<int> channels = source.nchannels() >= 3 ? std::vector{0, 1, 2} : std::vector{0};
   OIIO::ImageBuf image =
       OIIO::ImageBufAlgo::channels(source, static_cast<int>(channels.size()), channels);
@@ -76,15 +85,23 @@ void WriteConverted(const Photo& photo, const fs::path& target) {
   image.specmod().attribute("Orientation", 1);
   image.specmod().attribute("CompressionQuality", 95);
   image.specmod().attribute("oiio:ColorSpace", "sRGB");
-  image.set_write_format(OIIO::TypeUInt8);
-  if (image.has_error() || !image.write(target.string())) {
-    throw InputError("{}: cannot be written: {}", target.string(), image.geterror());
+  const auto output = CreateImageOutput(target);
+  OIIO::ImageSpec bytes = image.spec();
+  bytes.set_format(OIIO::TypeUInt8);
+  if (image.has_error() || !output || !output->open(target.string(), bytes) ||
+      !image.write(output.get()) || !output->close()) {
+    throw InputError("{}: cannot be written: {}", target.string(),
+                     image.has_error() ? image.geterror() : OIIO::geterror());
   }
 }
 
-void LinkOrCopy(const Photo& photo, const fs::path& target) {
+void LinkOrCopy(const Photo& photo, const fs::path& target, PhotoLinks links) {
   std::error_code error;
-  fs::create_symlink(photo.path, target, error);
+  if (links == PhotoLinks::kSymbolic) {
+    fs::create_symlink(photo.path, target, error);
+  } else {
+    fs::create_hard_link(photo.path, target, error);
+  }
   if (error) fs::copy_file(photo.path, target, error);
   if (error) throw InputError("{}: cannot be written: {}", target.string(), error.message());
 }
@@ -118,7 +135,7 @@ std::vector<ColmapImage> PlanColmapImages(const std::vector<Photo>& photos) {
 }
 
 void WriteColmapImages(const std::vector<Photo>& photos, const std::vector<ColmapImage>& plan,
-                       const fs::path& image_folder, int threads) {
+                       const fs::path& image_folder, int threads, PhotoLinks links) {
   std::error_code error;
   fs::create_directories(image_folder, error);
   for (const ColmapImage& image : plan) {
@@ -130,7 +147,7 @@ void WriteColmapImages(const std::vector<Photo>& photos, const std::vector<Colma
       [&](std::int64_t i) {
         const Photo& photo = photos[plan[i].photo];
         const fs::path target = image_folder / plan[i].name;
-        plan[i].converted ? WriteConverted(photo, target) : LinkOrCopy(photo, target);
+        plan[i].converted ? WriteConverted(photo, target) : LinkOrCopy(photo, target, links);
       },
       threads);
 }

@@ -49,10 +49,17 @@ void ColmapSteps::MatchExhaustively(const std::string& step) {
 }
 
 void ColmapSteps::MatchSequentially() {
-  Arguments arguments = MatchingArguments("sequential_matcher", Database());
-  AddKnown("sequential_matcher", {"SequentialMatching.overlap"}, kSequenceOverlap, arguments);
-  AddKnown("sequential_matcher", {"SequentialMatching.quadratic_overlap"}, 1, arguments);
-  RunOrThrow("matches", "sequential_matcher", arguments);
+  // Neighbours first, then those at distances of powers of two: up to COLMAP 3.10 the second pass
+  // includes the first, from 3.11 on it has only its own pairs. Matched pairs are skipped.
+  const std::string command = "sequential_matcher";
+  const bool has_option =
+      !colmap_.KnownOption(command, {"SequentialMatching.quadratic_overlap"}).empty();
+  for (int quadratic = has_option ? 0 : 1; quadratic <= 1; ++quadratic) {
+    Arguments arguments = MatchingArguments(command, Database());
+    AddKnown(command, {"SequentialMatching.overlap"}, kSequenceOverlap, arguments);
+    AddKnown(command, {"SequentialMatching.quadratic_overlap"}, quadratic, arguments);
+    RunOrThrow("matches", command, arguments);
+  }
 }
 
 void ColmapSteps::MatchGuided() {

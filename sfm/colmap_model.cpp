@@ -116,42 +116,46 @@ class Assembler {
         fmt::format("{}: image '{}'", images_file_.path.string(), record.name);
     PosedImage image;
     image.name = record.name;
-    image.path = image_folder_ / record.name;
     image.world_from_camera = WorldFromCamera(record, where);
     const auto camera = cameras_.find(record.camera_id);
     if (camera == cameras_.end()) {
       throw InputError("{}: its camera {} is not in {}", where, record.camera_id,
                        cameras_file_.path.string());
     }
-    std::error_code error;
-    if (!fs::is_regular_file(image.path, error)) {
+    const auto file = FindImageFile(image_folder_ / record.name);
+    if (!file) {
       result_.missing.push_back(record.name);
       return std::nullopt;
     }
+    image.path = *file;
     const auto stored = ReadImageSize(image.path);
     if (!stored) {
       result_.missing.push_back(record.name + " (not a readable image)");
       return std::nullopt;
     }
-    const auto upright = UprightByExif(camera->second, *stored);
-    if (!upright) {
+    const auto fitted = FitToImage(camera->second, *stored);
+    if (!fitted) {
       throw InputError(
-          "{}: the file is {}x{} pixels, but its camera {} is {}x{}; give the folder with the "
-          "photographs in the size that COLMAP used",
-          where, stored->width, stored->height, record.camera_id, camera->second.width,
-          camera->second.height);
+          "{}: the file is {}x{} pixels, which is no scaled copy of the {}x{} of its camera {}; "
+          "give "
+          "the photographs that COLMAP used",
+          where, stored->width, stored->height, camera->second.width, camera->second.height,
+          record.camera_id);
     }
-    image.upright_by_exif = *upright;
-    image.camera = CameraIndex(record.camera_id, camera->second);
+    image.upright_by_exif = fitted->upright_by_exif;
+    image.camera = CameraIndex(fitted->camera);
     result_.images.push_back(std::move(image));
+    pixels_per_pixel_.emplace_back(
+        static_cast<double>(fitted->camera.width) / camera->second.width,
+        static_cast<double>(fitted->camera.height) / camera->second.height);
     return static_cast<int>(result_.images.size()) - 1;
   }
 
-  int CameraIndex(std::uint32_t id, const Camera& camera) {
-    const auto [entry, is_new] =
-        index_of_camera_.emplace(id, static_cast<int>(result_.cameras.size()));
-    if (is_new) result_.cameras.push_back(camera);
-    return entry->second;
+  int CameraIndex(const Camera& camera) {
+    const auto found = std::ranges::find(result_.cameras, camera);
+    if (found != result_.cameras.end()) return static_cast<int>(found - result_.cameras.begin());
+    result_.cameras.push_back(camera);
+    return static_cast<int>(result_.cameras.size()) - 1;
   }
 
   void AddPoints() {
@@ -168,12 +172,21 @@ class Assembler {
         AddSighting(record.id, image_id, point2d, &point.track);
       }
     }
+    if (stale_sightings_ > 0) {
+      result_.warnings.push_back(
+          fmt::format("{}: {} sightings are of images that are not in {}, and are dropped",
+                      points_file_->path.string(), stale_sightings_, images_file_.path.string()));
+    }
   }
 
   void AddSighting(std::uint64_t point_id, std::uint32_t image_id, std::uint32_t point2d,
                    std::vector<TrackElement>* track) {
     const auto record = record_of_id_.find(image_id);
-    if (record == record_of_id_.end() || point2d >= records_[record->second].points2d.size()) {
+    if (record == record_of_id_.end()) {  // the image was removed from the model by hand
+      ++stale_sightings_;
+      return;
+    }
+    if (point2d >= records_[record->second].points2d.size()) {
       throw InputError(
           "{}: the track of point {} names 2D point {} of image {}, which is not in {}",
           points_file_->path.string(), point_id, point2d, image_id, images_file_.path.string());
@@ -185,7 +198,7 @@ class Assembler {
       throw InputError("{}: image '{}': its 2D point {} is not finite", images_file_.path.string(),
                        records_[record->second].name, point2d);
     }
-    track->push_back({*image, pixel});
+    track->push_back({*image, pixel.cwiseProduct(pixels_per_pixel_[*image])});
   }
 
   fs::path image_folder_;
@@ -197,7 +210,8 @@ class Assembler {
   std::vector<colmap::PointRecord> point_records_;
   std::unordered_map<std::uint32_t, std::size_t> record_of_id_;
   std::vector<std::optional<int>> index_of_record_;  // into result_.images
-  std::unordered_map<std::uint32_t, int> index_of_camera_;
+  std::vector<Eigen::Vector2d> pixels_per_pixel_;    // of the file, per pixel of the model
+  std::int64_t stale_sightings_ = 0;
   PosedImages result_;
 };
 

@@ -23,6 +23,7 @@ bp::child Start(const std::filesystem::path& executable, std::vector<std::string
                 bp::ipstream& output) {
   bp::environment environment = boost::this_process::environment();
   environment["QT_QPA_PLATFORM"] = "offscreen";
+  environment["TERM"] = "dumb";  // COLMAP 4 colours its messages even in a pipe
   try {
     return bp::child(bp::exe = executable.string(), bp::args = std::move(arguments), environment,
                      (bp::std_out & bp::std_err) > output, bp::std_in < bp::null,
@@ -48,7 +49,8 @@ class FailureLine {
     }
     const std::string text = line.substr(begin, kLongest);
     last_ = text;
-    static const std::regex error("error|check failed|what\\(\\):|not enough|no good",
+    // From 3.9 on, errors are lines of glog: "E20261129 12:00:00.0 123 sfm.cc:288] ...".
+    static const std::regex error("^[EF]\\d{4}|error|check failed|what\\(\\):|not enough|no good",
                                   std::regex::icase);
     if (std::regex_search(text, error)) last_error_ = text;
   }
@@ -69,6 +71,26 @@ ColmapProgram ColmapProgram::Find() {
         "colmap.github.io/install.html), or give poses: a transforms.json or a COLMAP project");
   }
   return ColmapProgram(found.string());
+}
+
+std::array<int, 3> ColmapProgram::Version() {
+  if (version_) return *version_;
+  version_.emplace();
+  bp::ipstream output;
+  bp::child child = Start(executable_, {"help"}, output);
+  static const std::regex version(R"(^COLMAP (\d{1,4})\.(\d{1,4})(?:\.(\d{1,4}))?)");
+  for (std::string line; std::getline(output, line);) {
+    std::smatch match;
+    if (!std::regex_search(line, match, version)) continue;
+    for (int i = 0; i < 3; ++i) (*version_)[i] = match[i + 1].matched ? std::stoi(match[i + 1]) : 0;
+  }
+  child.wait();
+  return *version_;
+}
+
+bool ColmapProgram::ResolvesLinks() {
+  const std::array<int, 3> version = Version();
+  return version >= std::array{3, 13, 0} && version < std::array{4, 0, 4};
 }
 
 std::string ColmapProgram::KnownOption(const std::string& command,
@@ -144,9 +166,12 @@ void ThrowStepFailed(const std::string& command, const ColmapProgram::Outcome& o
 }
 
 StepProgress ParseProgress(std::string_view line) {
-  static const std::regex file(R"((?:Processed file|Matching image) \[(\d{1,9})/(\d{1,9})\])");
-  static const std::regex block(R"(Matching block \[(\d{1,4})/(\d{1,4}), (\d{1,4})/(\d{1,4})\])");
-  static const std::regex registering(R"(Registering image #\d+ \((\d{1,9})\))");
+  static const std::regex file(
+      R"((?:Processed file|Matching image|Processing image) \[(\d{1,9})/(\d{1,9})\])");
+  static const std::regex block(
+      R"((?:Matching|Processing) block \[(\d{1,4})/(\d{1,4}), (\d{1,4})/(\d{1,4})\])");
+  static const std::regex registering(
+      R"(Registering image #\d+ \((?:num_reg_frames=)?(\d{1,9})\))");
   std::cmatch match;
   const auto number = [&match](int group) { return std::stoi(match[group].str()); };
   const char* begin = line.data();

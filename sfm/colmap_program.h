@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -19,6 +21,12 @@ class ColmapProgram {
   static ColmapProgram Find();
 
   explicit ColmapProgram(std::filesystem::path executable) : executable_(std::move(executable)) {}
+
+  // Major, minor, patch; zeros where the program does not print them.
+  std::array<int, 3> Version();
+  // Whether this version names a photograph by what a symbolic link in the folder of photographs
+  // points to, instead of by the link: 3.13.0 to 4.0.3.
+  bool ResolvesLinks();
 
   // The first of the names that `colmap COMMAND -h` lists; an empty string where it lists none.
   // Runs the program once per command.
@@ -40,6 +48,7 @@ class ColmapProgram {
  private:
   std::filesystem::path executable_;
   std::map<std::string, std::set<std::string>> options_;  // by command
+  std::optional<std::array<int, 3>> version_;
 };
 
 // Throws the InputError of a failed step: the command, COLMAP's error message, the log file.
@@ -51,8 +60,8 @@ struct StepProgress {
   int total = 0;  // 0 where it is unknown
 };
 // Parses the progress of a step from a line of output: "Processed file [12/50]", "Matching block
-// [1/2, 2/2]", "Matching image [3/50]" or "Registering image #12 (34)", with or without the prefix
-// that newer versions log.
+// [1/2, 2/2]", "Matching image [3/50]" or "Registering image #12 (34)", and what newer versions log
+// instead: a prefix, "Processing", "(num_reg_frames=34)".
 StepProgress ParseProgress(std::string_view line);
 
 }  // namespace nerf::sfm

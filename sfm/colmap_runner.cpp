@@ -129,11 +129,15 @@ bool IsNumberedSequence(const std::vector<std::string>& names) {
 PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& workspace,
                             const ColmapOptions& options, ColmapReport* report) {
   options.Check();
-  const std::vector<fs::path> files = ListPhotos(photo_folder);
+  const std::vector<PhotoFile> files = ListPhotos(photo_folder);
+  if (const std::string text = DescribeSubFolders(files); !text.empty()) {
+    spdlog::warn("{}: {}", photo_folder.string(), text);
+  }
   ColmapReport ignored;
   ColmapReport& r = report != nullptr ? *report : ignored;
 
-  const PhotoFolder folder = CheckPhotos(files, options.threads);
+  PhotoFolder folder = CheckPhotos(files, options.threads);
+  SkipDuplicates(folder);
   r.photos = static_cast<int>(folder.photos.size());
   r.skipped = folder.skipped;
   for (const SkippedPhoto& skipped : r.skipped) {

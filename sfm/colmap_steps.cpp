@@ -9,6 +9,7 @@
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "nerf/base/progress.h"
+#include "nerf/base/text.h"
 #include "sfm/colmap_database.h"
 #include "sfm/colmap_model.h"
 
@@ -45,9 +46,9 @@ std::vector<fs::path> ModelsIn(const fs::path& parent) {
   return models;
 }
 
-json FilesAsInputs(const std::vector<fs::path>& files) {
+json FilesAsInputs(const std::vector<PhotoFile>& files) {
   json list = json::array();
-  for (const fs::path& file : files) {
+  for (const auto& [name, file] : files) {
     std::error_code error;
     const auto changed = fs::last_write_time(file, error).time_since_epoch().count();
     list.push_back({file.string(), fs::file_size(file, error), changed});
@@ -64,7 +65,7 @@ ColmapSteps::ColmapSteps(fs::path workspace, const ColmapOptions& options, int p
       photos_(photos),
       ledger_(workspace_ / "steps.json") {}
 
-void ColmapSteps::PrepareImages(const std::vector<fs::path>& files,
+void ColmapSteps::PrepareImages(const std::vector<PhotoFile>& files,
                                 const std::vector<Photo>& photos,
                                 const std::vector<ColmapImage>& plan) {
   for (const Photo& photo : photos) {
@@ -72,7 +73,8 @@ void ColmapSteps::PrepareImages(const std::vector<fs::path>& files,
   }
   Step("images", FilesAsInputs(files), Images(), [&](StepLedger::State) {
     RemoveAll(Images());
-    WriteColmapImages(photos, plan, Images(), options_.threads);
+    WriteColmapImages(photos, plan, Images(), options_.threads,
+                      colmap_.ResolvesLinks() ? PhotoLinks::kHard : PhotoLinks::kSymbolic);
   });
 }
 
@@ -207,7 +209,7 @@ void ColmapSteps::RunMapper(const std::string& step, const fs::path& target,
   AddThreads("mapper", {"Mapper.num_threads"}, arguments);
   const ColmapProgram::Outcome outcome = Run(step, "mapper", arguments);
   const bool found_nothing =
-      outcome.last_line.find("failed to create") != std::string::npos ||
+      Lowercase(outcome.last_line).find("failed to create") != std::string::npos ||
       outcome.last_line.find("No good initial image pair") != std::string::npos;
   if (outcome.exit_code != 0 && !found_nothing) ThrowStepFailed("mapper", outcome, LogFile(step));
 }

@@ -29,8 +29,8 @@ class ColmapSteps {
 
   // Creates images/, the input of COLMAP.
   //   files  all files, readable or not; when one changes, all steps are repeated
-  void PrepareImages(const std::vector<std::filesystem::path>& files,
-                     const std::vector<Photo>& photos, const std::vector<ColmapImage>& plan);
+  void PrepareImages(const std::vector<PhotoFile>& files, const std::vector<Photo>& photos,
+                     const std::vector<ColmapImage>& plan);
   // Writes cameras (one per folder of images/) and SIFT features to database.db.
   void ExtractFeatures();
   // Writes verified matches to database.db. An interrupted match continues with the remaining

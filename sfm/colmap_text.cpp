@@ -105,7 +105,7 @@ CameraMap ReadCamerasText(const fs::path& file) {
     const std::string where = fmt::format("{}: camera {}", line->Where(), id);
     const std::string_view name = line->Word();
     const auto model = CameraModelFromName(name);
-    if (!model) throw InputError("{}: unknown camera model '{}'", where, name);
+    if (!model) throw InputError("{}: {}", where, UnsupportedLens(name));
     Camera camera{*model, 0, 0, {}};
     camera.width = line->Number<int>();
     camera.height = line->Number<int>();
@@ -114,6 +114,26 @@ CameraMap ReadCamerasText(const fs::path& file) {
     if (!cameras.emplace(id, camera).second) throw InputError("{}: listed twice", where);
   }
   return cameras;
+}
+
+// An image has two lines. Where the second is left out, the next image is in its place.
+void RequirePoints(Line line, const std::string& image) {
+  constexpr int kWordsOfAnImage = 10;
+  int words = 0;
+  bool numbers = true;
+  const std::string where = line.Where();
+  for (; !line.IsEmpty(); ++words) {
+    const std::string_view word = line.Word();
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    numbers = numbers && error == std::errc() && end == word.data() + word.size();
+  }
+  if (words < kWordsOfAnImage || numbers) return;
+  throw InputError(
+      "{}: another image, where the second line of image '{}' should be: its points X Y "
+      "POINT3D_ID, "
+      "or an empty line",
+      where, image);
 }
 
 std::vector<ImageRecord> ReadImagesText(const fs::path& file) {
@@ -130,7 +150,9 @@ std::vector<ImageRecord> ReadImagesText(const fs::path& file) {
     image.camera_id = line->Number<std::uint32_t>();
     image.name = line->Rest();
     // The second line of an image is empty where it has no points.
-    for (auto points = lines.Next(); points && !points->IsEmpty();) {
+    auto points = lines.Next();
+    if (points) RequirePoints(*points, image.name);
+    while (points && !points->IsEmpty()) {
       const double x = points->Number<double>();
       image.points2d.emplace_back(x, points->Number<double>());
       points->Word();  // the id of the point, which points3D has too

@@ -1,21 +1,47 @@
 #include "sfm/masks.h"
 
+#include <iterator>
 #include <system_error>
 
+#include "nerf/image/image_files.h"
+
 namespace nerf::sfm {
+namespace {
 
 namespace fs = std::filesystem;
 
-void FindMasks(PosedImages& posed) {
-  for (PosedImage& image : posed.images) {
-    const fs::path folder = image.path.parent_path(), name = image.path.filename();
-    for (const fs::path& masks : {folder / "masks", folder.parent_path() / "masks"}) {
-      for (const fs::path& file :
-           {masks / (name.string() + ".png"), masks / fs::path(name).replace_extension(".png")}) {
-        std::error_code ignored;
-        if (image.mask.empty() && fs::is_regular_file(file, ignored)) image.mask = file;
+// The folder in which an image has its name: "photos" for photos/left/1.jpg of the name left/1.jpg.
+fs::path RootOf(const PosedImage& image) {
+  fs::path root = image.path;
+  const fs::path name = image.name;
+  for (auto parts = std::distance(name.begin(), name.end()); parts > 0; --parts) {
+    root = root.parent_path();
+  }
+  return root;
+}
+
+void FindMask(PosedImage& image) {
+  const fs::path folder = image.path.parent_path(), root = RootOf(image);
+  const fs::path name = image.path.filename(), below_root = fs::path(image.name).parent_path();
+  for (const fs::path& masks :
+       {folder / "masks", folder.parent_path() / "masks", root / "masks" / below_root,
+        root.parent_path() / "masks" / below_root}) {
+    std::error_code ignored;
+    if (!fs::is_directory(masks, ignored)) continue;
+    for (const fs::path& file : {masks / name, masks / name.stem()}) {
+      if (const auto mask = FindImageFile(file)) {
+        image.mask = *mask;
+        return;
       }
     }
+  }
+}
+
+}  // namespace
+
+void FindMasks(PosedImages& posed) {
+  for (PosedImage& image : posed.images) {
+    if (image.mask.empty()) FindMask(image);
   }
 }
 

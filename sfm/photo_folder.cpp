@@ -1,13 +1,16 @@
 #include "sfm/photo_folder.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <set>
 
+#include "nerf/base/file_bytes.h"
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
+#include "nerf/base/text.h"
 #include "nerf/image/image_files.h"
+#include "nerf/image/oiio_files.h"
 
 namespace nerf::sfm {
 namespace {
@@ -18,9 +21,18 @@ namespace fs = std::filesystem;
 constexpr int kMaxSide = 1 << 16;
 constexpr int kMaxChannels = 64;
 
-std::string FirstLine(std::string text) {
-  text.resize(std::min(text.find('\n'), text.size()));
-  return text.empty() ? "cannot be decoded" : text;
+// The first line of a message of OpenImageIO.
+std::string ReasonOf(const std::string& message) {
+  return message.empty() ? "cannot be decoded" : FirstLine(message);
+}
+
+bool IsCroppedAfterExif(const OIIO::ImageSpec& spec) {
+  const ImageSize exif = {spec.get_int_attribute("Exif:PixelXDimension"),
+                          spec.get_int_attribute("Exif:PixelYDimension")};
+  if (exif.width < 1 || exif.height < 1) return false;
+  const ImageSize stored = {spec.full_width, spec.full_height};
+  // Programs that turn a picture upright often leave the sizes as they were.
+  return !IsScaledCopy(stored, exif) && !IsScaledCopy(stored, {exif.height, exif.width});
 }
 
 // Reads all rows, a few at a time, so that even 100 megapixels take little memory.
@@ -41,9 +53,9 @@ bool DecodeAllRows(OIIO::ImageInput& input) {
 }
 
 // Sets `photo`. Returns why the file is unusable, or nullopt.
-std::optional<std::string> Decode(const fs::path& path, Photo& photo) {
-  const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) return FirstLine(OIIO::geterror());
+std::optional<std::string> Decode(const PhotoFile& file, Photo& photo) {
+  const auto input = OpenImageInput(file.path);
+  if (!input) return ReasonOf(OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide ||
       spec.full_width < 1 || spec.full_height < 1 || spec.full_width > kMaxSide ||
@@ -53,25 +65,85 @@ std::optional<std::string> Decode(const fs::path& path, Photo& photo) {
                        spec.nchannels);
   }
   if (spec.deep) return "a deep image, which has no single colour per pixel";
-  photo.name = path.filename().string();
-  photo.path = path;
+  photo.name = file.name;
+  photo.path = file.path;
   photo.format = input->format_name();
   photo.width = spec.full_width;
   photo.height = spec.full_height;
-  const int orientation = spec.get_int_attribute("Orientation", 1);
-  photo.orientation = orientation >= 1 && orientation <= 8 ? orientation : 1;
+  photo.orientation = OrientationOf(spec);
   photo.eight_bit = spec.format == OIIO::TypeUInt8;
+  photo.cropped_after_exif = IsCroppedAfterExif(spec);
   const bool decoded = DecodeAllRows(*input);
   const std::string message = input->geterror();
-  if (!decoded) return FirstLine(message);
+  if (!decoded) return ReasonOf(message);
   // libjpeg fills missing pixels with grey and only warns.
   if (message.find("Premature end") != std::string::npos) return "truncated";
   return std::nullopt;
 }
 
+bool Exists(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+// Whether a sub-folder can hold photographs.
+bool HoldsPhotos(const fs::path& folder) {
+  static const std::set<std::string> kOthers = {"masks",  "mask",   "depth",
+                                                "depths", "colmap", "sparse"};
+  const std::string name = Lowercase(folder.filename().string());
+  // A run of `nerf train`, or poses.
+  const bool is_result = Exists(folder / "config.json") || Exists(folder / "steps.json");
+  return !name.starts_with('.') && !kOthers.contains(name) && !is_result;
+}
+
+void AddPhotos(const fs::path& folder, const std::string& prefix, std::vector<PhotoFile>& files) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;  // a dangling link is no regular file
+    const fs::path& path = it->path();
+    const std::string name = prefix + path.filename().string();
+    if (it->is_directory(ignored) && !it->is_symlink(ignored)) {
+      if (HoldsPhotos(path)) AddPhotos(path, name + "/", files);
+    } else if (HasImageExtension(path) && !path.filename().string().starts_with('.') &&
+               it->is_regular_file(ignored)) {
+      files.push_back({name, fs::absolute(path).lexically_normal()});
+    }
+  }
+}
+
+// An extension of a file in the folder that is none of an image, for messages.
+std::string OtherExtension(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    const fs::path& path = it->path();
+    if (it->is_regular_file(ignored) && !path.filename().string().starts_with('.') &&
+        path.has_extension() && !HasImageExtension(path)) {
+      return path.extension().string();
+    }
+  }
+  return {};
+}
+
+[[noreturn]] void ThrowTooFew(const std::string& where, std::size_t readable, std::size_t all,
+                              const std::vector<SkippedPhoto>& skipped) {
+  const std::string first =
+      skipped.empty() ? "" : fmt::format(" ({}: {})", skipped[0].name, skipped[0].reason);
+  throw InputError(
+      "{}: only {} of {} photographs can be read{}; copy them again; at least two are needed",
+      where, readable, all, first);
+}
+
 }  // namespace
 
-std::vector<fs::path> ListPhotos(const fs::path& folder) {
+std::vector<PhotoFile> PhotosBelow(const fs::path& folder) {
+  std::vector<PhotoFile> files;
+  AddPhotos(folder, "", files);
+  std::ranges::sort(files, {}, &PhotoFile::name);
+  return files;
+}
+
+std::vector<PhotoFile> ListPhotos(const fs::path& folder) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) {
@@ -80,61 +152,81 @@ std::vector<fs::path> ListPhotos(const fs::path& folder) {
   if (!fs::is_directory(status)) {
     throw InputError("{}: is a file; give the folder with the photographs", folder.string());
   }
-  std::vector<fs::path> files;
-  std::string other_extension;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::error_code ignored;  // a dangling link is no regular file
-    const std::string name = it->path().filename().string();
-    if (name.starts_with('.') || !it->is_regular_file(ignored)) continue;
-    if (HasImageExtension(it->path())) {
-      files.push_back(fs::absolute(it->path()).lexically_normal());
-    } else if (it->path().has_extension()) {
-      other_extension = it->path().extension().string();
-    }
-  }
+  fs::directory_iterator(folder, error);
   if (error) throw InputError("{}: cannot be listed: {}", folder.string(), error.message());
+  std::vector<PhotoFile> files = PhotosBelow(folder);
   if (files.empty()) {
+    const std::string other = OtherExtension(folder);
     throw InputError(
         "{}: contains no photographs{}; give a folder of jpg, png, tif, exr, ... files",
-        folder.string(),
-        other_extension.empty() ? "" : fmt::format(" (but {} files)", other_extension));
+        folder.string(), other.empty() ? "" : fmt::format(" (but {} files)", other));
   }
   if (files.size() == 1) {
     throw InputError("{}: contains only one photograph, {}; poses need at least two that overlap",
-                     folder.string(), files[0].filename().string());
+                     folder.string(), files[0].name);
   }
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return a.filename().string() < b.filename().string();
-  });
   return files;
 }
 
-PhotoFolder CheckPhotos(const std::vector<fs::path>& files, int threads) {
-  const int count = static_cast<int>(files.size());
+std::string DescribeSubFolders(const std::vector<PhotoFile>& files) {
+  std::map<std::string, int> count_of;
+  for (const PhotoFile& file : files) ++count_of[fs::path(file.name).parent_path().string()];
+  if (!count_of.contains("") || count_of.size() == 1) return {};
+  std::string text;
+  for (const auto& [sub_folder, count] : count_of) {
+    if (!sub_folder.empty()) {
+      text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", sub_folder, count);
+    }
+  }
+  return fmt::format("photographs in sub-folders are used as well as the {} above them: {}",
+                     count_of.at(""), text);
+}
+
+PhotoFolder CheckPhotos(const std::vector<PhotoFile>& files, int threads) {
   std::vector<Photo> photos(files.size());
   std::vector<std::optional<std::string>> reasons(files.size());
   ParallelForEach(
-      count, [&](std::int64_t i) { reasons[i] = Decode(files[i], photos[i]); }, threads);
+      std::ssize(files), [&](std::int64_t i) { reasons[i] = Decode(files[i], photos[i]); },
+      threads);
 
   PhotoFolder result;
-  for (int i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
     if (reasons[i]) {
-      result.skipped.push_back({files[i].filename().string(), *reasons[i]});
+      result.skipped.push_back({files[i].name, *reasons[i]});
     } else {
       result.photos.push_back(std::move(photos[i]));
     }
   }
   if (result.photos.size() < 2) {
-    const std::string folder = files.empty() ? "" : files[0].parent_path().string();
-    const std::string first =
-        result.skipped.empty()
-            ? ""
-            : fmt::format(" ({}: {})", result.skipped[0].name, result.skipped[0].reason);
-    throw InputError(
-        "{}: only {} of {} photographs can be read{}; copy them again; at least two are needed",
-        folder, result.photos.size(), count, first);
+    const std::string folder = files.empty() ? "" : files[0].path.parent_path().string();
+    ThrowTooFew(folder, result.photos.size(), files.size(), result.skipped);
   }
   return result;
+}
+
+void SkipDuplicates(PhotoFolder& folder) {
+  std::map<std::uintmax_t, std::vector<const Photo*>> of_size;
+  std::vector<Photo> unique;
+  unique.reserve(folder.photos.size());
+  const std::size_t all = folder.photos.size() + folder.skipped.size();
+  for (Photo& photo : folder.photos) {
+    std::error_code error;
+    std::vector<const Photo*>& alike = of_size[fs::file_size(photo.path, error)];
+    const auto same = std::ranges::find_if(alike, [&](const Photo* other) {
+      return ReadFileBytes(other->path) == ReadFileBytes(photo.path);
+    });
+    if (same != alike.end()) {
+      folder.skipped.push_back({photo.name, "the same file as " + (*same)->name});
+      continue;
+    }
+    unique.push_back(std::move(photo));
+    alike.push_back(&unique.back());
+  }
+  folder.photos = std::move(unique);
+  if (folder.photos.size() < 2) {
+    ThrowTooFew(folder.photos[0].path.parent_path().string(), folder.photos.size(), all,
+                folder.skipped);
+  }
 }
 
 }  // namespace nerf::sfm

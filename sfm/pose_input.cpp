@@ -8,6 +8,7 @@
 #include "nerf/image/image_files.h"
 #include "sfm/colmap_model.h"
 #include "sfm/llff.h"
+#include "sfm/photo_folder.h"
 #include "sfm/transforms_json.h"
 
 namespace fs = std::filesystem;
@@ -35,20 +36,30 @@ std::optional<fs::path> FindColmapModel(const fs::path& input) {
 // The folder that contains most of the photographs of a model.
 fs::path FindColmapImages(const fs::path& input, const fs::path& model) {
   const std::vector<std::string> names = ColmapImageNames(model);
-  std::vector<fs::path> folders = {input / "images", input};
+  std::vector<fs::path> projects = {input};
   // For a model folder (project/sparse/0), the photographs are beside or above it.
   fs::path above = fs::absolute(input).lexically_normal();
   if (!above.has_filename()) above = above.parent_path();
   for (int level = 0; level < 2; ++level) {
     above = above.parent_path();
-    folders.push_back(above / "images");
-    folders.push_back(above);
+    projects.push_back(above);
+  }
+  std::vector<fs::path> folders;
+  for (const fs::path& project : projects) {
+    folders.push_back(project / "images");
+    folders.push_back(project);
+  }
+  // Data sets are often handed around with reduced photographs only.
+  for (const fs::path& project : projects) {
+    for (const char* name : {"images_2", "images_4", "images_8"}) folders.push_back(project / name);
   }
   fs::path best;
   std::size_t most = 0;
   for (const fs::path& folder : folders) {
     std::size_t found = 0;
-    for (const std::string& name : names) found += IsFile(folder / name) ? 1 : 0;
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) continue;
+    for (const std::string& name : names) found += FindImageFile(folder / name) ? 1 : 0;
     if (found > most) {
       most = found;
       best = folder;
@@ -57,7 +68,8 @@ fs::path FindColmapImages(const fs::path& input, const fs::path& model) {
   if (most == 0) {
     throw InputError(
         "{}: none of the {} images of this COLMAP model was found (the first is '{}', expected in "
-        "{}); put the photographs into {}",
+        "{}); put the photographs into {}, or reduced ones into images_2, images_4 or images_8 "
+        "beside it",
         model.string(), names.size(), names.empty() ? "" : names[0], folders[0].string(),
         folders[0].string());
   }
@@ -77,11 +89,13 @@ InputLocation FindInFolder(const fs::path& input) {
   for (const fs::path& folder : {input, input / "images"}) {
     if (!ImageFilesIn(folder).empty()) return {InputKind::kPhotos, {}, folder};
   }
+  for (const fs::path& folder : {input / "images", input}) {
+    if (!PhotosBelow(folder).empty()) return {InputKind::kPhotos, {}, folder};
+  }
   throw InputError(
       "{}: contains no photographs and no poses (neither transforms.json, transforms_train.json, "
       "poses_bounds.npy, a COLMAP model here, in sparse/ or in colmap/sparse/, nor image files "
-      "here "
-      "or in images/)",
+      "here or below)",
       input.string());
 }
 

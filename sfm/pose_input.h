@@ -22,9 +22,10 @@ struct InputLocation {
 //   poses_bounds.npy                       LLFF
 //   a COLMAP model in the folder itself, sparse/, sparse/N, colmap/sparse/, colmap/sparse/N or N
 //                                          of the N the one with most registered images;
-//                                          photographs in images/ beside or above it, or the folder
-//                                          itself, whichever contains most of the model's images
-//   image files in the folder, or in images/   photographs without poses
+//                                          photographs in images/ beside or above it, in the folder
+//                                          itself, or in images_2, images_4 or images_8, whichever
+//                                          contains most of the model's images
+//   image files in the folder or below it  photographs without poses
 // Throws InputError when the input is missing or none of these, with the list of what was tried.
 InputLocation FindInput(const std::filesystem::path& input);
 

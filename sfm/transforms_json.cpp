@@ -34,36 +34,13 @@ std::string NameFromPath(const std::string& file_path) {
   return fs::path(file_path).lexically_normal().generic_string();
 }
 
-// Blender's exporter omits the extension.
-std::optional<fs::path> FindImage(const fs::path& path) {
-  std::error_code error;
-  for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG"}) {
-    fs::path candidate = path;
-    candidate += extension;
-    if (fs::is_regular_file(candidate, error)) return candidate;
-  }
-  return std::nullopt;
-}
-
-Eigen::Isometry3d ReadPose(const JsonFields& frame) {
+ScaledPose ReadPose(const JsonFields& frame) {
   const std::string where = frame.Where("transform_matrix");
-  const nlohmann::json* rows = frame.Array("transform_matrix");
-  if (!rows) throw InputError("{} is missing", where);
-  const bool has_shape = rows->size() == 4 && std::all_of(rows->begin(), rows->end(), [](auto& r) {
-                           return r.is_array() && r.size() == 4;
-                         });
-  if (!has_shape) throw InputError("{} must be 4 lists of 4 numbers", where);
-  Eigen::Matrix4d matrix;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      const nlohmann::json& entry = (*rows)[row][column];
-      if (!entry.is_number()) {
-        throw InputError("{}[{}][{}] must be a finite number", where, row, column);
-      }
-      matrix(row, column) = entry.get<double>();
-    }
-  }
-  return WorldFromOpenCVCamera(RigidFromMatrix(matrix, where));
+  const nlohmann::json* value = frame.Array("transform_matrix");
+  if (!value) throw InputError("{} is missing", where);
+  ScaledPose scaled = RigidFromScaledMatrix(PoseMatrixFromJson(*value, where), where);
+  scaled.pose = WorldFromOpenCVCamera(scaled.pose);
+  return scaled;
 }
 
 void RequireNew(std::map<std::string, std::size_t>& frame_of, const std::string& value,
@@ -116,6 +93,7 @@ class Reader {
               [](const PosedImage& a, const PosedImage& b) { return a.name < b.name; });
     std::sort(result_.missing.begin(), result_.missing.end());
     result_.source = file;
+    AddWarnings(file.string());
     return std::move(result_);
   }
 
@@ -125,11 +103,16 @@ class Reader {
     PosedImage image;
     image.name = name;
     image.split = split;
-    image.world_from_camera = ReadPose(frame);
-    if (const auto mask = frame.String("mask_path")) image.mask = file.parent_path() / *mask;
+    const ScaledPose scaled = ReadPose(frame);
+    image.world_from_camera = scaled.pose;
+    if (scaled.scale != 1) {
+      ++scaled_poses_;
+      scale_ = scaled.scale;
+    }
+    if (const auto mask = frame.String("mask_path")) FindMask(file.parent_path() / *mask, image);
     // Already in an earlier file: train comes first, and a training image cannot be held out.
     if (!name_of_path_.emplace(path_in_file, name).second) return;
-    const auto path = FindImage(file.parent_path() / path_in_file);
+    const auto path = FindImageFile(file.parent_path() / path_in_file);
     const auto stored = path ? ReadImageSize(*path) : std::nullopt;
     if (!stored) {
       result_.missing.push_back(path ? path_in_file + " (not a readable image)" : path_in_file);
@@ -146,14 +129,35 @@ class Reader {
     if (!fitted) {
       throw InputError(
           "{}: the image '{}' is {}x{} pixels, which is no scaled copy of the {}x{} of w and h; "
-          "fix "
-          "w and h, or give the images for which the file was written",
+          "fix w and h, or give the images for which the file was written",
           frame.Where("file_path"), path_in_file, stored->width, stored->height, camera.width,
           camera.height);
     }
     image.upright_by_exif = frame.Bool("upright_by_exif").value_or(fitted->upright_by_exif);
     image.camera = CameraIndex(fitted->camera);
     result_.images.push_back(std::move(image));
+  }
+
+  void FindMask(const fs::path& path, PosedImage& image) {
+    if (const auto mask = FindImageFile(path)) {
+      image.mask = *mask;
+    } else {
+      missing_masks_.push_back(path.generic_string());
+    }
+  }
+
+  void AddWarnings(const std::string& file) {
+    if (scaled_poses_ > 0) {
+      result_.warnings.push_back(
+          fmt::format("{}: the axes of {} poses have a scale of {:.4g}, which is taken out", file,
+                      scaled_poses_, scale_));
+    }
+    if (!missing_masks_.empty()) {
+      result_.warnings.push_back(
+          fmt::format("{}: {} masks named by mask_path do not exist (the first: {}); their "
+                      "photographs are used whole",
+                      file, missing_masks_.size(), missing_masks_[0]));
+    }
   }
 
   int CameraIndex(const Camera& camera) {
@@ -187,6 +191,9 @@ class Reader {
   }
 
   AbsentImages absent_;
+  int scaled_poses_ = 0;
+  double scale_ = 1;  // of the last of them
+  std::vector<std::string> missing_masks_;
   PosedImages result_;
   std::map<std::string, std::string> name_of_path_;
   std::map<std::tuple<CameraModel, int, int, std::vector<double>>, int> index_of_camera_;

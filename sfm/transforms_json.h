@@ -14,11 +14,13 @@ enum class AbsentImages {
 
 // Reads a transforms.json of instant-ngp, nerfstudio or Blender (NeRF-synthetic): world_from_camera
 // matrices with OpenGL camera axes, lenses for the whole file or per frame (keys:
-// transforms_json_camera.h), file_path relative to the JSON file, with or without an extension.
+// transforms_json_camera.h), file_path relative to the JSON file, with or without an extension, in
+// upper or lower case (FindImageFile).
 //   - With transforms_train.json, transforms_test.json and transforms_val.json beside it are read,
 //     and each image is marked with its split. nerfstudio's train_filenames, val_filenames and
 //     test_filenames mark splits too. A training image is never test or validation.
-//   - mask_path is a frame's mask, black where pixels are masked out (nerfstudio).
+//   - mask_path is a frame's mask (nerfstudio); those that do not exist are in `warnings`.
+//   - A scale that the axes of a pose have in common is taken out, and is in `warnings`.
 //   - Pixels are taken as stored, as COLMAP takes them, unless their size fits w and h only after
 //     rotation by EXIF, or our own key upright_by_exif is set.
 //   - Where the image is a scaled copy of w x h, the lens is scaled to it.

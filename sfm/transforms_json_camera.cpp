@@ -93,8 +93,11 @@ bool ReadIsFisheye(const FrameKeys& keys) {
   for (const char* key : {"equirectangular", "latlong", "ftheta_p0"}) {
     const JsonFields& fields = keys.Holding(key);
     if (fields.Has(key) && (key == std::string_view("ftheta_p0") || *fields.Bool(key))) {
-      throw InputError("{}: this kind of lens is not supported; undistort the photographs",
-                       fields.Where(key));
+      throw InputError(
+          "{}: this kind of lens is not supported; undistort the photographs, or cut panoramas "
+          "into "
+          "perspective views",
+          fields.Where(key));
     }
   }
   const bool is_fisheye = keys.Holding("is_fisheye").Bool("is_fisheye").value_or(false);
@@ -103,8 +106,7 @@ bool ReadIsFisheye(const FrameKeys& keys) {
   if (!name) return is_fisheye;
   const auto model = CameraModelFromName(*name);
   if (!model) {
-    throw InputError("{}: '{}' is none of COLMAP's camera models (PINHOLE, OPENCV, ...)",
-                     fields.Where("camera_model"), *name);
+    throw InputError("{}: {}", fields.Where("camera_model"), UnsupportedLens(*name));
   }
   switch (*model) {
     case CameraModel::kFov:

@@ -4,67 +4,46 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <string>
 
 #include "nerf/base/input_error.h"
+#include "nerf/base/temporary_file.h"
 
 namespace nerf {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Owns a file descriptor and its temporary file, which is removed unless it was renamed.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& target)
-      : path_(target.string() + ".tmp" + std::to_string(getpid())),
-        fd_(open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {}
-  ~TemporaryFile() {
-    if (fd_ >= 0) close(fd_);
-    if (!renamed_) unlink(path_.c_str());
+// Writes all bytes to a new file, and the file to disk.
+bool WriteToDisk(const fs::path& path, std::string_view bytes) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) return false;
+  while (!bytes.empty()) {
+    const ssize_t written = write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) break;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
   }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  bool Write(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written = write(fd_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return true;
-  }
-
-  bool FlushAndRename(const fs::path& target) {
-    if (fsync(fd_) != 0) return false;
-    const int closed = close(fd_);
-    fd_ = -1;
-    if (closed != 0 || std::rename(path_.c_str(), target.c_str()) != 0) return false;
-    renamed_ = true;
-    return true;
-  }
-
-  bool IsOpen() const { return fd_ >= 0; }
-
- private:
-  std::string path_;
-  int fd_;
-  bool renamed_ = false;
-};
+  const bool complete = bytes.empty() && fsync(file) == 0;
+  const int reason = errno;
+  const bool closed = close(file) == 0;
+  if (!complete) errno = reason;
+  return complete && closed;
+}
 
 }  // namespace
 
 void WriteFileAtomically(const fs::path& path, std::string_view bytes) {
   TemporaryFile file(path);
-  if (!file.IsOpen() || !file.Write(bytes) || !file.FlushAndRename(path)) {
+  if (!WriteToDisk(file.path(), bytes)) {
     throw InputError("{}: cannot be written ({}); free some space or choose another output folder",
                      path.string(), std::strerror(errno));
   }
+  file.Keep();
+  SyncFolderOf(path);
 }
 
 std::string ReadWholeFile(const fs::path& path) {
@@ -96,6 +75,7 @@ void MakeOutputFolder(const fs::path& folder) {
     throw InputError("{}: cannot be written to ({}); choose another output folder with -o",
                      folder.string(), std::strerror(errno));
   }
+  RemoveAbandonedFiles(folder);
 }
 
 }  // namespace nerf

@@ -7,7 +7,7 @@
 namespace nerf {
 
 // Writes a file atomically: to a temporary file beside it, flushed to disk, then renamed over the
-// target. An existing file stays until the new one is complete.
+// target; a power failure does not undo it. An existing file stays until the new one is complete.
 // Throws InputError naming the file and the reason (folder missing, no space left, ...) and removes
 // the temporary file.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
@@ -20,7 +20,8 @@ std::string ReadWholeFile(const std::filesystem::path& path);
 void RemoveAll(const std::filesystem::path& path);
 
 // Creates the folder and its parents. Throws InputError naming it when that is not possible, or
-// when files cannot be created in it.
+// when files cannot be created in it. Removes what killed writers left in it
+// (RemoveAbandonedFiles).
 void MakeOutputFolder(const std::filesystem::path& folder);
 
 }  // namespace nerf

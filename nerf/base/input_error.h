@@ -10,8 +10,8 @@ namespace nerf {
 
 // An error in the user's input: a file, a key, a flag. The message is one line that names the file,
 // the key and the fix. `main` prints it and exits with status 2. Since names and values in it may
-// come from hostile files, control characters are replaced by spaces and long messages are
-// shortened.
+// come from hostile files, control characters are replaced by spaces, bytes that are not
+// UTF-8 by '?', and long messages are shortened.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(OneLine(message)) {}

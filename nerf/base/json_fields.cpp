@@ -15,14 +15,14 @@ bool Skip(std::string_view word, std::string_view text, std::size_t* at) {
   return true;
 }
 
-std::string WithNullForNonFinite(std::string_view text) {
+std::string WithQuotedNonFinite(std::string_view text) {
   std::string result;
   result.reserve(text.size());
   bool in_string = false;
   for (std::size_t at = 0; at < text.size();) {
     if (!in_string &&
         (Skip("NaN", text, &at) || Skip("Infinity", text, &at) || Skip("-Infinity", text, &at))) {
-      result += "null";
+      result += "\"not finite\"";
       continue;
     }
     if (in_string && text[at] == '\\' && at + 1 < text.size())
@@ -44,7 +44,11 @@ std::string Reason(const nlohmann::json::exception& error) {
 }  // namespace
 
 nlohmann::json ReadJsonFile(const std::filesystem::path& file) {
-  const std::string text = WithNullForNonFinite(ReadFileBytes(file));
+  const std::string bytes = ReadFileBytes(file);
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
+    throw InputError("{}: is encoded in UTF-16; save it as UTF-8", file.string());
+  }
+  const std::string text = WithQuotedNonFinite(bytes);
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception& error) {
@@ -62,7 +66,7 @@ JsonFields::JsonFields(const nlohmann::json& object, std::string prefix)
 
 const nlohmann::json* JsonFields::Find(std::string_view key) const {
   const auto found = object_.find(key);
-  return found == object_.end() ? nullptr : &*found;
+  return found == object_.end() || found->is_null() ? nullptr : &*found;
 }
 
 std::optional<double> JsonFields::Number(std::string_view key) const {

@@ -27,4 +27,11 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
+// Makes a renamed file survive a power failure: writes the entry in its folder to disk.
+void SyncFolderOf(const std::filesystem::path& file);
+
+// Removes the temporary files in a folder whose writers were killed: those of this machine whose
+// process does not run any more.
+void RemoveAbandonedFiles(const std::filesystem::path& folder);
+
 }  // namespace nerf

@@ -1,14 +1,15 @@
 #include "nerf/capture/olat_capture.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
-#include <cctype>
-#include <sstream>
+#include <map>
 #include <utility>
 
-#include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
+#include "nerf/base/text.h"
 #include "nerf/capture/chrome_ball.h"
-#include "nerf/image/image_files.h"
+#include "nerf/capture/olat_pictures.h"
 #include "nerf/image/image_io.h"
 #include "nerf/image/mask.h"
 #include "nerf/light/light_file.h"
@@ -18,79 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kLightsName = "lights.txt";
+constexpr const char* kLightNames[] = {"lights.txt", "light_directions.txt"};
 constexpr const char* kChromeName = "chrome";
-
-bool IsMask(const fs::path& file) { return file.stem().string().find("mask") != std::string::npos; }
-
-// Natural order: numbers in names are compared by value, so that "cat.2.tga" is before
-// "cat.10.tga".
-bool NaturalLess(const fs::path& left, const fs::path& right) {
-  const std::string a = left.filename().string();
-  const std::string b = right.filename().string();
-  const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (!is_digit(a[i]) || !is_digit(b[j])) {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i, ++j;
-      continue;
-    }
-    const auto number = [&](const std::string& text, std::size_t& at) {
-      const std::size_t begin = text.find_first_not_of('0', at);
-      while (at < text.size() && is_digit(text[at])) ++at;
-      return begin < at ? text.substr(begin, at - begin) : std::string();
-    };
-    const std::string m = number(a, i);
-    const std::string n = number(b, j);
-    if (m != n) return m.size() != n.size() ? m.size() < n.size() : m < n;
-  }
-  return std::pair(a.size() - i, a) < std::pair(b.size() - j, b);
-}
-
-std::vector<fs::path> PicturesIn(const fs::path& folder) {
-  std::vector<fs::path> files = ImageFilesIn(folder);
-  std::ranges::sort(files, NaturalLess);
-  return files;
-}
-
-// Reads the list NAME.txt of the images in the folder NAME, in order.
-std::vector<fs::path> ReadImageList(const fs::path& list, const fs::path& folder) {
-  std::istringstream text(ReadWholeFile(list));
-  std::vector<fs::path> files;
-  for (std::string line; std::getline(text, line);) {
-    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
-    if (!HasImageExtension(line)) continue;  // the first line counts them
-    files.push_back(folder / fs::path(line).filename());
-    if (!fs::exists(files.back())) {
-      throw InputError("{}: lists {}, which does not exist in {}", list.string(), line,
-                       folder.string());
-    }
-  }
-  return files;
-}
-
-struct Pictures {
-  std::vector<fs::path> images;
-  std::optional<fs::path> mask;
-};
-
-Pictures FindPictures(const fs::path& folder) {
-  const fs::path list = folder.parent_path() / (folder.filename().string() + ".txt");
-  std::vector<fs::path> files;
-  if (fs::is_regular_file(list)) files = ReadImageList(list, folder);
-  if (files.empty()) files = PicturesIn(folder);
-  Pictures pictures;
-  for (fs::path& file : files) {
-    if (IsMask(file)) {
-      pictures.mask = std::move(file);
-    } else {
-      pictures.images.push_back(std::move(file));
-    }
-  }
-  return pictures;
-}
 
 // The path of a folder with its name as the last part, for "vase/" and "." as well.
 fs::path WithFolderName(const fs::path& folder) {
@@ -112,12 +42,12 @@ fs::path ImageFolder(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw InputError("{}: no such folder; give one with an image for each light", folder.string());
   }
-  if (!PicturesIn(folder).empty()) return folder;
+  if (!OlatPicturesIn(folder).empty()) return folder;
   std::vector<fs::path> subjects;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (!entry.is_directory() || entry.path().filename() == kChromeName) continue;
     if (ContainsResults(entry.path())) continue;
-    if (!PicturesIn(entry.path()).empty()) subjects.push_back(entry.path());
+    if (!OlatPicturesIn(entry.path()).empty()) subjects.push_back(entry.path());
   }
   if (subjects.empty()) {
     throw InputError("{}: contains no images; give a folder with one for each light",
@@ -150,31 +80,80 @@ void CheckSizes(OlatCapture& capture) {
                      capture.height);
   };
   std::ranges::for_each(capture.images, check);
-  if (capture.mask) check(*capture.mask);
+  std::ranges::for_each(capture.masks, check);
+}
+
+// The file of the lights in the folder of the images or in its parent.
+std::optional<fs::path> LightFileNear(const fs::path& folder) {
+  for (const char* name : kLightNames) {
+    if (const auto found = Near(folder, name)) return found;
+  }
+  for (const fs::path& place : {folder, folder.parent_path()}) {
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (fs::directory_iterator it(place, error), end; !error && it != end; it.increment(error)) {
+      if (Lowercase(it->path().extension().string()) == ".lp") found.push_back(it->path());
+    }
+    if (found.size() == 1) return found.front();
+  }
+  return std::nullopt;
+}
+
+// The lights in the order of the images, from a list that names the images. The extensions may
+// differ, as where raw files were developed.
+std::vector<DirectionalLight> LightsByName(const LightList& list, const OlatCapture& capture,
+                                           const fs::path& file) {
+  std::map<std::string, std::size_t> light_of;
+  for (std::size_t i = 0; i < list.images.size(); ++i) {
+    const std::string stem = Lowercase(fs::path(list.images[i]).stem().string());
+    if (!light_of.emplace(stem, i).second) {
+      throw InputError("{}: names the image {} twice; remove one of the lines", file.string(),
+                       list.images[i]);
+    }
+  }
+  std::vector<DirectionalLight> lights;
+  for (const fs::path& image : capture.images) {
+    const auto found = light_of.find(Lowercase(image.stem().string()));
+    if (found == light_of.end()) {
+      throw InputError("{}: has no light for the image {}; add a line, or remove the image",
+                       file.string(), image.filename().string());
+    }
+    lights.push_back(list.lights[found->second]);
+  }
+  return lights;
 }
 
 void FindLights(OlatCapture& capture, const fs::path& folder, const OlatOptions& options) {
-  const auto found = Near(folder, kLightsName);
+  const auto found = LightFileNear(folder);
   const bool from_ball = options.lights == LightCalibration::kChromeBall ||
                          (options.lights == LightCalibration::kAuto && !found);
   if (from_ball) {
     if (!capture.chrome) {
       throw InputError(
-          "{}: contains neither {} nor a folder \"{}\" with a chrome ball under the same lights; "
-          "add one of them",
-          folder.string(), kLightsName, kChromeName);
+          "{}: contains neither lights.txt, light_directions.txt or an .lp file, nor a folder "
+          "\"{}\" with a chrome ball under the same lights; add one of them",
+          folder.string(), kChromeName);
     }
     capture.lights = LightsFromChrome(capture, options.encoding);
     capture.lights_source = capture.chrome->string();
     return;
   }
   const fs::path file = options.lights == LightCalibration::kAuto ? *found : options.light_file;
-  capture.lights = ReadLights(file);
+  LightList list = ReadLights(file);
   capture.lights_source = file.string();
-  if (capture.lights.size() != capture.images.size()) {
-    throw InputError("{}: {} lights for {} images in {}; give one for each", file.string(),
-                     capture.lights.size(), capture.images.size(), folder.string());
+  if (const auto beside = Near(folder, "light_intensities.txt"); beside && !list.has_intensities) {
+    spdlog::warn("{}: its intensities are not used, since the lights are from {}", beside->string(),
+                 file.string());
   }
+  if (!list.images.empty()) {
+    capture.lights = LightsByName(list, capture, file);
+    return;
+  }
+  if (list.lights.size() != capture.images.size()) {
+    throw InputError("{}: {} lights for {} images in {}; give one for each", file.string(),
+                     list.lights.size(), capture.images.size(), folder.string());
+  }
+  capture.lights = std::move(list.lights);
 }
 
 }  // namespace
@@ -184,11 +163,12 @@ OlatCapture FindOlatCapture(const fs::path& given, const OlatOptions& options) {
   OlatCapture capture;
   capture.name = folder.filename().string();
   capture.folder = given;
-  Pictures pictures = FindPictures(folder);
+  OlatPictures pictures = FindOlatPictures(folder);
   capture.images = std::move(pictures.images);
-  capture.mask = std::move(pictures.mask);
+  capture.masks = std::move(pictures.masks);
   if (capture.images.empty()) {
-    throw InputError("{}: contains a mask but no images", folder.string());
+    throw InputError("{}: contains only masks (images with the word mask in their names)",
+                     folder.string());
   }
   const auto chrome = Near(folder, kChromeName);
   if (chrome && fs::is_directory(*chrome) && *chrome != folder) capture.chrome = chrome;
@@ -209,8 +189,8 @@ void CheckOutputFolder(const OlatCapture& capture, const fs::path& output) {
 
 std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, InputEncoding encoding) {
   const fs::path& folder = *capture.chrome;
-  const Pictures pictures = FindPictures(folder);
-  if (!pictures.mask) {
+  const OlatPictures pictures = FindOlatPictures(folder);
+  if (pictures.masks.empty()) {
     throw InputError("{}: contains no mask of the ball; add an image with \"mask\" in its name",
                      folder.string());
   }
@@ -218,8 +198,8 @@ std::vector<DirectionalLight> LightsFromChrome(const OlatCapture& capture, Input
     throw InputError("{}: {} images of the ball, but {} of {}; give one for each light",
                      folder.string(), pictures.images.size(), capture.images.size(), capture.name);
   }
-  const BallOutline ball =
-      FindBall(ReadMaskCoverage(*pictures.mask, true), pictures.mask->string());
+  const fs::path& mask = pictures.masks.front();
+  const BallOutline ball = FindBall(ReadMaskCoverage(mask, true), mask.string());
   std::vector<DirectionalLight> lights;
   for (const fs::path& file : pictures.images) {
     lights.push_back({LightFromHighlight(ReadLinearImage(file, encoding), ball, file.string())});

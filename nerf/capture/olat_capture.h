@@ -12,12 +12,12 @@ namespace nerf {
 
 // Photographs of a subject by a fixed camera, one light at a time (OLAT).
 struct OlatCapture {
-  std::string name;                           // of the subject
-  std::filesystem::path folder;               // as it was given
-  std::vector<std::filesystem::path> images;  // all of one size
-  std::vector<DirectionalLight> lights;       // for each image
-  std::string lights_source;                  // the file or folder of the directions
-  std::optional<std::filesystem::path> mask;
+  std::string name;                             // of the subject
+  std::filesystem::path folder;                 // as it was given
+  std::vector<std::filesystem::path> images;    // all of one size
+  std::vector<DirectionalLight> lights;         // for each image
+  std::string lights_source;                    // the file or folder of the directions
+  std::vector<std::filesystem::path> masks;     // the subject is where all of them are white
   std::optional<std::filesystem::path> chrome;  // folder of a chrome ball under the same lights
   int width = 0;
   int height = 0;
@@ -37,14 +37,17 @@ struct OlatOptions {
 };
 
 // Finds a capture in a folder. The images are in the folder itself or in its only sub-folder with
-// images, not counting chrome balls and results (normals.exr, relit.exr). `lights.txt`, and the
-// folder `chrome` of the ball with a mask, are searched for in the folder of the images and in its
-// parent. An image with "mask" in its name is the mask. The order of the images is that of a list,
-// NAME.txt beside the folder NAME, if there is one (one image per line, of which only the file name
-// matters, as in the data sets of the universities of Washington and Harvard), else by name, with
-// numbers compared by value.
-// Throws InputError if there are no images, several sizes, several subjects, no lights, or not as
-// many lights as images.
+// images, not counting chrome balls and results (normals.exr, relit.exr).
+//   - Their order is that of a list, one image per line of which only the file name matters:
+//     filenames.txt in the folder (DiLiGenT, Shi et al. 2019), or NAME.txt beside the folder NAME
+//     (the data sets of the universities of Washington and Harvard); else by name, with numbers
+//     compared by value.
+//   - Images with "mask" in their names are masks, unless all have it.
+//   - Lights are in lights.txt, light_directions.txt or one .lp file, in the folder of the images
+//     or in its parent; so is the folder `chrome` of the ball, with a mask.
+//   - Ground truth (Normal_gt.*) is left out.
+// Throws InputError if there are no images, several sizes, several subjects, no lights, or not a
+// light for each image.
 OlatCapture FindOlatCapture(const std::filesystem::path& folder, const OlatOptions& options);
 
 // Throws InputError if `output` is a folder in which the next run would take results for images:

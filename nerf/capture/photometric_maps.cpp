@@ -36,17 +36,14 @@ struct Observations {
 std::vector<int> PixelsInside(const OlatCapture& capture) {
   const int count = capture.width * capture.height;
   std::vector<int> pixels;
-  if (!capture.mask) {
-    pixels.resize(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) pixels[static_cast<std::size_t>(i)] = i;
-    return pixels;
-  }
-  const Image mask = ReadMaskCoverage(*capture.mask, true);
-  for (int i = 0; i < count; ++i) {
-    if (mask.pixels[static_cast<std::size_t>(i)] > 0.5f) pixels.push_back(i);
-  }
-  if (pixels.empty()) {
-    throw InputError("{}: the mask is black; paint the subject white", capture.mask->string());
+  for (int i = 0; i < count; ++i) pixels.push_back(i);
+  for (const std::filesystem::path& file : capture.masks) {
+    const Image mask = ReadMaskCoverage(file, true);
+    std::erase_if(pixels,
+                  [&](int i) { return !(mask.pixels[static_cast<std::size_t>(i)] > 0.5f); });
+    if (pixels.empty()) {
+      throw InputError("{}: the mask is black; paint the subject white", file.string());
+    }
   }
   return pixels;
 }

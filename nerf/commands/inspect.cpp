@@ -56,10 +56,10 @@ nlohmann::json JsonFrom(const PosedImages& posed, const Inspection& inspection) 
 PosedImages WithoutPoses(const std::filesystem::path& folder) {
   PosedImages photographs;
   photographs.source = folder;
-  for (const std::filesystem::path& path : sfm::ListPhotos(folder)) {
+  for (const sfm::PhotoFile& file : sfm::ListPhotos(folder)) {
     PosedImage image;
-    image.name = path.filename().string();
-    image.path = path;
+    image.name = file.name;
+    image.path = file.path;
     image.upright_by_exif = true;
     photographs.images.push_back(image);
   }
@@ -72,6 +72,7 @@ void RunInspect(const InspectArguments& arguments) {
   const bool has_poses = location.kind != sfm::InputKind::kPhotos;
   PosedImages posed = has_poses ? sfm::ReadPosedInput(location) : WithoutPoses(location.images);
   sfm::FindMasks(posed);
+  for (const std::string& warning : posed.warnings) spdlog::warn("{}", warning);
   Inspection inspection;
   if (has_poses) {
     ProgressLine progress("inspecting", static_cast<std::int64_t>(posed.images.size()));

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "nerf/base/input_error.h"
 #include "nerf/base/stopwatch.h"
+#include "nerf/capture/normal_truth.h"
 #include "nerf/capture/photometric_folder.h"
 #include "nerf/capture/photometric_maps.h"
 #include "nerf/commands/choice_option.h"
@@ -22,6 +24,7 @@ namespace {
 struct StereoArguments {
   std::string folder;
   std::string output;
+  std::string truth;
   OlatOptions capture;
   StereoOptions stereo;
   int memory_mb = static_cast<int>(kObservationBytes >> 20);
@@ -33,11 +36,18 @@ struct StereoArguments {
   }
 };
 
+void PrintError(const NormalError& error) {
+  fmt::print("against the true normals: mean error {:.2f} degrees, median {:.2f}, of {} pixels\n",
+             error.mean, error.median, error.pixels);
+}
+
 void RunPhotometricStereo(const StereoArguments& arguments) {
   const Stopwatch watch;
   arguments.Check();
   UseThreads(arguments.threads);
   const auto capture = FindOlatCapture(arguments.folder, arguments.capture);
+  std::optional<Image> truth;  // read first, since a mistake in it should not cost the result
+  if (!arguments.truth.empty()) truth = ReadNormalTruth(arguments.truth);
   const std::filesystem::path folder =
       arguments.output.empty() ? capture.name + "-normals" : arguments.output;
   CheckOutputFolder(capture, folder);
@@ -57,6 +67,7 @@ void RunPhotometricStereo(const StereoArguments& arguments) {
       capture.lights_source, maps.pixels,
       share * (maps.pixels - maps.robust_pixels - maps.unsolved_pixels), share * maps.robust_pixels,
       share * maps.unsolved_pixels, 100 * maps.median_residual, watch.Seconds(), folder.string());
+  if (truth) PrintError(CompareNormals(maps.normal, *truth, arguments.truth));
 }
 
 }  // namespace
@@ -67,11 +78,15 @@ void AddPhotometricStereoCommand(CLI::App& app) {
       app.add_subcommand("photometric-stereo",
                          "Computes normals and albedo from photographs under one light at a time");
   command
-      ->add_option("folder", arguments->folder,
-                   "images from one camera, one for each light; with lights.txt or a folder chrome")
+      ->add_option(
+          "folder", arguments->folder,
+          "images from one camera, one for each light; with lights.txt, light_directions.txt, "
+          "an .lp file or a folder chrome")
       ->required();
   command->add_option("-o,--output", arguments->output, "output folder [NAME-normals]");
   AddLightsOption(*command, arguments->capture);
+  command->add_option("--truth", arguments->truth,
+                      "true normals, Normal_gt.mat or a picture of them: prints the mean error");
   AddInputEncodingOption(*command, arguments->capture.encoding,
                          "of the images: srgb, linear, or auto: 8-bit images as the one with the "
                          "smaller least-squares residual, others as linear");
@@ -104,11 +119,15 @@ void AddPhotometricStereoCommand(CLI::App& app) {
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "lights.txt: a line per image, \"x y z\", \"x y z intensity\" or \"x y z r g b\"; x right,\n"
-      "y up, z towards the camera. An image with \"mask\" in its name is white on the subject.\n"
+      "y up, z towards the camera, after the name of the image or without it. An image with "
+      "\"mask\" in\n"
+      "its name is white on the subject. Folders of DiLiGenT and .lp files of RTI are read as they "
+      "are.\n"
       "Examples:\n"
       "  nerf photometric-stereo photometric/cat\n"
       "  nerf photometric-stereo photometric/cat --lights chrome -o out/cat\n"
-      "  nerf photometric-stereo vase --method robust --encoding linear");
+      "  nerf photometric-stereo vase --method robust --encoding linear\n"
+      "  nerf photometric-stereo ballPNG --truth ballPNG/Normal_gt.mat");
   command->callback([arguments] { RunPhotometricStereo(*arguments); });
 }
 

@@ -8,26 +8,16 @@
 #include "nerf/output/camera_path_json.h"
 #include "nerf/output/video.h"
 #include "nerf/scene/camera.h"
+#include "nerf/scene/output_names.h"
 
 namespace nerf {
 namespace {
 
 namespace fs = std::filesystem;
 
-// "train/r_0.png" -> "train_r_0", "../images/0001.jpg" -> "images_0001"
-std::string FileStem(const std::string& image_name) {
-  std::string stem;
-  for (const fs::path& part : fs::path(image_name).replace_extension().relative_path()) {
-    if (part == "..") continue;
-    if (!stem.empty()) stem += '_';
-    stem += part.string();
-  }
-  return stem;
-}
-
-Shot ShotOf(const OpenedRun& run, const PosedImage& image, int downscale) {
-  return {FileStem(image.name), image.world_from_camera,
-          Downscaled(run.posed.cameras[image.camera], downscale)};
+Shot ShotOf(const OpenedRun& run, std::size_t image, const std::string& name, int downscale) {
+  const PosedImage& posed = run.posed.images[image];
+  return {name, posed.world_from_camera, Downscaled(run.posed.cameras[posed.camera], downscale)};
 }
 
 ShotList ShotsOfPath(const CameraPath& path, const std::string& folder, int downscale) {
@@ -44,15 +34,19 @@ ShotList ShotsOfPath(const CameraPath& path, const std::string& folder, int down
 ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs::path& folder) {
   const int trained = run.model->GetModel().config.data.downscale;
   const int downscale = options.downscale.value_or(trained);
+  const std::vector<PosedImage>& images = run.posed.images;
+  const std::vector<std::string> names = OutputNames(images);
   if (!options.image.empty()) {
-    const auto found = std::ranges::find_if(run.posed.images, [&](const auto& image) {
-      return image.name == options.image || FileStem(image.name) == options.image;
-    });
-    if (found == run.posed.images.end()) {
+    std::size_t found = 0;
+    while (found < images.size() && images[found].name != options.image) ++found;
+    if (found == images.size()) {
+      found = static_cast<std::size_t>(std::ranges::find(names, options.image) - names.begin());
+    }
+    if (found == images.size()) {
       throw InputError("--image {}: the run has no such photograph; names are listed in {}",
                        options.image, PosesPath(folder).string());
     }
-    return {{ShotOf(run, *found, downscale)}, "image", {}};
+    return {{ShotOf(run, found, names[found], downscale)}, "image", {}};
   }
   if (!options.pose.empty()) {
     const PathPose pose = ReadPose(options.pose, run.posed);
@@ -78,8 +72,8 @@ ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs:
                        options.downscale.value_or(1));
   }
   ShotList list{{}, "held-out", {}};
-  for (const PosedImage& image : run.posed.images) {
-    if (image.split == Split::kTest) list.shots.push_back(ShotOf(run, image, downscale));
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i].split == Split::kTest) list.shots.push_back(ShotOf(run, i, names[i], downscale));
   }
   if (list.shots.empty()) {
     throw InputError("{}: the run has no held-out images; use --path, --pose or --image",

@@ -1,5 +1,7 @@
 #include "nerf/light/environment_map.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,19 +17,34 @@ using Eigen::Vector3d;
 
 using std::numbers::pi;
 
+// The share of the light that negative values may have where a map was resampled, with a filter
+// that overshoots.
+constexpr double kResampling = 1e-3;
+
 void CheckRadiance(const Image& image, const std::string& name) {
   if (image.width != 2 * image.height || image.height < 1) {
     throw InputError("{}: {} x {} pixels; an environment map must be twice as wide as high", name,
                      image.width, image.height);
   }
+  double light = 0, negative = 0;
+  for (const float value : image.pixels) (value < 0 ? negative : light) += std::fabs(value);
+  const bool resampled = negative <= kResampling * light;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const float value = image.pixels[i];
-    if (value >= 0 && std::isfinite(value)) continue;
+    if (std::isfinite(value) && (value >= 0 || resampled)) continue;
     const auto pixel = static_cast<int>(i / 3);
     throw InputError(
         "{}: the value at pixel ({}, {}) is {}; radiance must be finite and not negative", name,
         pixel % image.width, pixel / image.width, value);
   }
+}
+
+void ClampNegative(Image& image, const std::string& name) {
+  const auto negative = std::ranges::count_if(image.pixels, [](float v) { return v < 0; });
+  if (negative == 0) return;
+  spdlog::warn("{}: {} values are slightly negative, as after resampling; they are taken as 0",
+               name, negative);
+  for (float& value : image.pixels) value = std::max(value, 0.0f);
 }
 
 // The bin of a piecewise constant distribution that u selects, and the position in it, in [0,1].
@@ -63,6 +80,7 @@ EnvironmentMap EnvironmentMap::Uniform(const Color& radiance) {
 EnvironmentMap::EnvironmentMap(Image radiance, const std::string& name)
     : radiance_(std::move(radiance)) {
   CheckRadiance(radiance_, name);
+  ClampNegative(radiance_, name);
   const auto stride = static_cast<std::size_t>(width()) + 1;
   rows_.assign(static_cast<std::size_t>(height()) + 1, 0);
   columns_.assign(static_cast<std::size_t>(height()) * stride, 0);

@@ -18,8 +18,8 @@ namespace nerf {
 class EnvironmentMap {
  public:
   // Reads an HDR or EXR file, or any other image, converted to linear light. Throws InputError
-  // naming the file if the image is not twice as wide as high, or a value is negative or not
-  // finite.
+  // naming the file if the image is not twice as wide as high, or a value is not finite or
+  // negative. Slightly negative values, as resampling leaves, are taken as 0 with a warning.
   static EnvironmentMap Read(const std::filesystem::path& file);
 
   // The same radiance from all directions.

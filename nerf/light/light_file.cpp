@@ -1,5 +1,6 @@
 #include "nerf/light/light_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -7,13 +8,20 @@
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
+#include "nerf/image/image_files.h"
 
 namespace nerf {
 namespace {
 
-// The numbers of a line, without its comment; nullopt if a word is not a finite number.
-std::optional<std::vector<double>> NumbersIn(const std::string& line) {
-  std::istringstream words(line.substr(0, line.find('#')));
+// A line without its comment: the name of an image, if there is one, and numbers.
+struct Line {
+  std::string image;
+  std::vector<double> numbers;
+};
+
+// nullopt if a word is not a finite number.
+std::optional<std::vector<double>> NumbersIn(const std::string& text) {
+  std::istringstream words(text);
   std::vector<double> numbers;
   for (std::string word; words >> word;) {
     char* end = nullptr;
@@ -22,6 +30,60 @@ std::optional<std::vector<double>> NumbersIn(const std::string& line) {
     numbers.push_back(value);
   }
   return numbers;
+}
+
+// The name is what comes up to the last word with the extension of an image. Folders are dropped,
+// those of Windows too.
+std::optional<Line> ParseLine(const std::string& line) {
+  std::size_t end_of_name = 0;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t begin = line.find_first_not_of(" \t\r", at);
+    if (begin == std::string::npos) break;
+    at = std::min(line.find_first_of(" \t\r", begin), line.size());
+    std::string word = line.substr(begin, at - begin);
+    if (word.ends_with('"')) word.pop_back();
+    if (HasImageExtension(word)) end_of_name = at;
+  }
+  Line parsed;
+  if (end_of_name > 0) {
+    const std::size_t begin = line.find_first_not_of(" \t\"");
+    std::string name = line.substr(begin, end_of_name - begin);
+    if (name.ends_with('"')) name.pop_back();
+    parsed.image = name.substr(name.find_last_of("/\\") + 1);
+  }
+  const std::string rest = line.substr(end_of_name);
+  const auto numbers = NumbersIn(end_of_name > 0 ? rest : rest.substr(0, rest.find('#')));
+  if (!numbers) return std::nullopt;
+  parsed.numbers = *numbers;
+  return parsed;
+}
+
+void ReadIntensities(const std::filesystem::path& file, LightList& list) {
+  std::istringstream text(ReadWholeFile(file));
+  std::size_t next = 0;
+  int line_number = 0;
+  for (std::string line; std::getline(text, line);) {
+    const std::string where = fmt::format("{}:{}", file.string(), ++line_number);
+    const auto numbers = NumbersIn(line.substr(0, line.find('#')));
+    if (numbers && numbers->empty()) continue;
+    if (!numbers || (numbers->size() != 1 && numbers->size() != 3)) {
+      throw InputError("{}: expected the intensity of a light, \"r g b\" or \"i\"", where);
+    }
+    if (next < list.lights.size()) {
+      const std::vector<double>& n = *numbers;
+      Color& irradiance = list.lights[next].irradiance;
+      irradiance *= n.size() == 1 ? Color::Constant(n[0]) : Color(n[0], n[1], n[2]);
+      if (!(irradiance > 0).all()) {
+        throw InputError("{}: the intensity of a light must be above 0", where);
+      }
+    }
+    ++next;
+  }
+  if (next != list.lights.size()) {
+    throw InputError("{}: has {} intensities for {} lights; give one for each", file.string(), next,
+                     list.lights.size());
+  }
+  list.has_intensities = true;
 }
 
 DirectionalLight LightFrom(const std::vector<double>& numbers, const std::string& where) {
@@ -40,30 +102,43 @@ DirectionalLight LightFrom(const std::vector<double>& numbers, const std::string
 
 }  // namespace
 
-std::vector<DirectionalLight> ReadLights(const std::filesystem::path& file) {
+LightList ReadLights(const std::filesystem::path& file) {
   std::istringstream text(ReadWholeFile(file));
-  std::vector<DirectionalLight> lights;
+  LightList list;
   std::optional<double> announced;
   int line_number = 0;
   for (std::string line; std::getline(text, line);) {
     const std::string where = fmt::format("{}:{}", file.string(), ++line_number);
-    const auto numbers = NumbersIn(line);
-    if (numbers && numbers->empty()) continue;
-    if (numbers && numbers->size() == 1 && lights.empty() && !announced) {
-      announced = numbers->front();
+    const auto parsed = ParseLine(line);
+    const std::size_t count = parsed ? parsed->numbers.size() : 0;
+    if (parsed && parsed->image.empty() && count == 0) continue;
+    if (count == 1 && parsed->image.empty() && list.lights.empty() && !announced) {
+      announced = parsed->numbers.front();
       continue;
     }
-    if (!numbers || (numbers->size() != 3 && numbers->size() != 4 && numbers->size() != 6)) {
-      throw InputError("{}: expected a light, \"x y z\", \"x y z i\" or \"x y z r g b\"", where);
+    if (count != 3 && count != 4 && count != 6) {
+      throw InputError(
+          "{}: expected a light, \"x y z\", \"x y z i\" or \"x y z r g b\", with decimal points, "
+          "after the name of its image or without one",
+          where);
     }
-    lights.push_back(LightFrom(*numbers, where));
+    if (!list.lights.empty() && parsed->image.empty() != list.images.empty()) {
+      throw InputError("{}: name the image in every line, or in none", where);
+    }
+    list.lights.push_back(LightFrom(parsed->numbers, where));
+    list.has_intensities = list.has_intensities || count > 3;
+    if (!parsed->image.empty()) list.images.push_back(parsed->image);
   }
-  if (announced && *announced != static_cast<double>(lights.size())) {
+  if (announced && *announced != static_cast<double>(list.lights.size())) {
     throw InputError("{}: the first line announces {} lights, {} follow; correct one of them",
-                     file.string(), *announced, lights.size());
+                     file.string(), *announced, list.lights.size());
   }
-  if (lights.empty()) throw InputError("{}: contains no lights", file.string());
-  return lights;
+  if (list.lights.empty()) throw InputError("{}: contains no lights", file.string());
+  const auto intensities = file.parent_path() / "light_intensities.txt";
+  if (file.filename() == "light_directions.txt" && std::filesystem::exists(intensities)) {
+    ReadIntensities(intensities, list);
+  }
+  return list;
 }
 
 void WriteLights(const std::filesystem::path& file, std::span<const DirectionalLight> lights) {

@@ -19,36 +19,12 @@ using nlohmann::json;
 
 constexpr int kMaxSide = 1 << 16;  // pixels
 
-void AppendNumbers(const json& value, const std::string& where, std::vector<double>* numbers) {
-  if (value.is_number()) {
-    numbers->push_back(value.get<double>());
-    return;
-  }
-  if (!value.is_array() || value.size() > 16) {
-    throw InputError("{}: must contain 16 or 12 numbers, row by row", where);
-  }
-  for (const json& entry : value) {
-    if (entry.is_array() && !entry.empty() && entry.front().is_array()) {
-      throw InputError("{}: is nested too deeply, give a matrix", where);
-    }
-    AppendNumbers(entry, where, numbers);
-  }
-}
-
 Eigen::Isometry3d WorldFromCamera(const JsonFields& fields, std::string_view key) {
   const std::string where = fields.Where(key);
   const json* value = fields.Array(key);
   if (!value) throw InputError("{} is missing; give 16 numbers, row by row", where);
-  std::vector<double> numbers;
-  AppendNumbers(*value, where, &numbers);
-  if (numbers.size() != 16 && numbers.size() != 12) {
-    throw InputError("{}: contains {} numbers, give 16 or 12, row by row", where, numbers.size());
-  }
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    matrix(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = numbers[i];
-  }
-  return WorldFromOpenCVCamera(RigidFromMatrix(matrix, where));
+  return WorldFromOpenCVCamera(
+      RigidFromScaledMatrix(PoseMatrixFromJson(*value, where), where).pose);
 }
 
 double VerticalFov(const JsonFields& fields, std::string_view key) {

@@ -120,6 +120,7 @@ void ReportDataPlan(const PosedImages& posed, const DataOptions& options, int th
 }
 
 void ReportMissing(const PosedImages& posed, const PipelineListener& listener) {
+  for (const std::string& warning : posed.warnings) listener(Warning{warning});
   if (posed.missing.empty()) return;
   listener(Warning{fmt::format("{}: {} of {} images are missing and are skipped: {}",
                                posed.source.string(), posed.missing.size(),

@@ -55,7 +55,7 @@ void AddSavedSparsePoints(const PosedImages& posed, const SceneNormalization& no
 void ReportDataPlan(const PosedImages& posed, const DataOptions& options, int threads,
                     const PipelineListener& listener);
 
-// Reports photographs that have poses but are missing.
+// Reports photographs that have poses but are missing, and what else is odd about the source.
 void ReportMissing(const PosedImages& posed, const PipelineListener& listener);
 
 }  // namespace nerf

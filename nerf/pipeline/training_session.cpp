@@ -9,6 +9,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/progress.h"
+#include "nerf/base/temporary_file.h"
 #include "nerf/effects/depth_supervision.h"
 #include "nerf/model/checkpoint.h"
 #include "nerf/model/refined_poses.h"
@@ -177,6 +178,7 @@ std::unique_ptr<TrainingSession> TrainingSession::Resume(const fs::path& run,
   auto session = std::make_unique<TrainingSession>(std::move(request), watch, std::move(listener));
   TrainingSession& s = *session;
   const Checkpoint checkpoint = ReadRunCheckpoint(run);
+  RemoveAbandonedFiles(run);
   const Model model = ModelFromCheckpoint(checkpoint);
   const int threads = NumThreads();
   if (const int before = checkpoint.meta.value("threads", threads); before != threads) {

@@ -1,6 +1,11 @@
 #include "nerf/scene/camera_models.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <array>
+#include <charconv>
+#include <iterator>
+#include <string>
 
 namespace nerf {
 namespace {
@@ -43,6 +48,35 @@ std::optional<CameraModel> CameraModelFromName(std::string_view name) {
     if (kModels[id].name == name) return static_cast<CameraModel>(id);
   }
   return std::nullopt;
+}
+
+std::string UnsupportedLens(std::string_view name) {
+  // Names of models that exist elsewhere, by COLMAP's numeric ids from 11 on.
+  static constexpr std::array<std::string_view, 7> kNewer = {"RAD_TAN_THIN_PRISM_FISHEYE",
+                                                             "SIMPLE_DIVISION",
+                                                             "DIVISION",
+                                                             "SIMPLE_FISHEYE",
+                                                             "FISHEYE",
+                                                             "EUCM",
+                                                             "EQUIRECTANGULAR"};
+  std::string shown(name);
+  int id = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), id);
+  if (error == std::errc() && id >= kNumCameraModels &&
+      id < kNumCameraModels + std::ssize(kNewer)) {
+    shown = fmt::format("{} (id {})", kNewer[id - kNumCameraModels], id);
+  }
+  for (const std::string_view panorama : {"EQUIRECTANGULAR", "VR180", "OMNI"}) {
+    if (shown.find(panorama) == std::string::npos) continue;
+    return fmt::format(
+        "the camera model {} is not supported: it shows more than a perspective view; cut the "
+        "pictures into perspective views",
+        shown);
+  }
+  return fmt::format(
+      "the camera model {} is not supported; undistort the photographs with colmap "
+      "image_undistorter, and give its output folder",
+      shown);
 }
 
 }  // namespace nerf

@@ -75,9 +75,10 @@ struct PosedImages {
   std::vector<PosedImage> images;
   std::vector<SparsePoint> points;  // may be empty
   std::optional<std::array<double, 2>>
-      depth_range_in_world;          // near, far; where the source has them
-  std::vector<std::string> missing;  // images of the source without a readable file
-  std::filesystem::path source;      // file or folder from which the poses were read
+      depth_range_in_world;           // near, far; where the source has them
+  std::vector<std::string> missing;   // images of the source without a readable file
+  std::vector<std::string> warnings;  // what else is odd about the source, one line each
+  std::filesystem::path source;       // file or folder from which the poses were read
 };
 
 }  // namespace nerf

@@ -36,7 +36,7 @@ bool IsOurs(const std::string& name) {
   static const std::regex ours(
       R"(view_\d{3}\.(png|exr|depth\.exr|normal\.exr|albedo\.exr))"
       R"(|((transforms|poses)\.json|(cameras|images|points3D)\.txt)(\.tmp\d+)?)"
-      R"(|\.view_\d{3}\..*)");
+      R"(|\.(view_\d{3}|transforms|poses|cameras|images|points3D)\..*)");
   return std::regex_match(name, ours);
 }
 

@@ -31,6 +31,19 @@ TEST_F(SequentialMatching, ManyNumberedPhotosAreMatchedInSequence) {
               AllOf(HasSubstr("sequential_matcher"), HasSubstr("--SequentialMatching.overlap 20")));
 }
 
+// From COLMAP 3.11 on, pairs at quadratic distances are matched instead of neighbours.
+TEST_F(SequentialMatching, NeighboursAndQuadraticDistancesAreTwoPasses) {
+  WritePhotos(6);
+  fake_.Set("help",
+            "--FeatureMatching.use_gpu arg\n--SequentialMatching.overlap arg\n"
+            "--SequentialMatching.quadratic_overlap arg\n");
+  fake_.Set("models", "0 6\n");
+  options_.matcher = "sequential";
+  Run();
+  EXPECT_THAT(fake_.Calls()[1], HasSubstr("--SequentialMatching.quadratic_overlap 0"));
+  EXPECT_THAT(fake_.Calls()[2], HasSubstr("--SequentialMatching.quadratic_overlap 1"));
+}
+
 class GuidedMatching : public nerf::test::ColmapRun {
  protected:
   // The matches of the fake COLMAP: none but between the first and the last.

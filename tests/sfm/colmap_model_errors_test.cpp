@@ -101,10 +101,6 @@ TEST_F(ColmapModelErrors, InconsistentFilesAreRefused) {
   WriteBinary(contents);
   EXPECT_THAT(ReadError(), HasSubstr("track of point 7 names 2D point 3 of image 8"));
   contents = SmallColmapContents();
-  contents.points[1].track[0].first = 1;
-  WriteBinary(contents);
-  EXPECT_THAT(ReadError(), HasSubstr("of image 1, which"));
-  contents = SmallColmapContents();
   contents.images[1].name = "c.ppm";
   WriteBinary(contents);
   EXPECT_THAT(ReadError(), HasSubstr("image 'c.ppm' is listed twice"));
@@ -121,10 +117,43 @@ TEST_F(ColmapModelErrors, InconsistentFilesAreRefused) {
 TEST_F(ColmapModelErrors, WrongImageSizeIsNamedWithBothSizes) {
   WriteImages();
   WriteBinary(SmallColmapContents());
-  scratch_.WriteImage("images/c.ppm", 6, 4);
+  scratch_.WriteImage("images/c.ppm", 6, 7);
   const std::string error = ReadError();
-  EXPECT_THAT(error, HasSubstr("image 'c.ppm': the file is 6x4 pixels"));
-  EXPECT_THAT(error, HasSubstr("camera 3 is 12x8"));
+  EXPECT_THAT(error, HasSubstr("image 'c.ppm': the file is 6x7 pixels"));
+  EXPECT_THAT(error, HasSubstr("12x8 of its camera 3"));
+}
+
+TEST_F(ColmapModelErrors, AMissingSecondLineIsNamed) {
+  WriteImages();
+  WriteFiles({"3 SIMPLE_RADIAL 12 8 10 6 4 0.1\n",
+              "21 1 0 0 0 0 0 0 3 c.ppm\n22 1 0 0 0 1 0 0 3 sub/b.ppm\n", ""},
+             ".txt");
+  EXPECT_THAT(ReadError(), HasSubstr("images.txt:2: another image, where the second line of image "
+                                     "'c.ppm' should be"));
+}
+
+TEST_F(ColmapModelErrors, LensesOfNewerVersionsAreNamedWithTheRemedy) {
+  WriteImages();
+  const auto error_of = [&](const std::string& camera) {
+    WriteFiles({camera, "21 1 0 0 0 0 0 0 3 c.ppm\n\n", ""}, ".txt");
+    return ReadError();
+  };
+  EXPECT_THAT(error_of("3 SIMPLE_DIVISION 12 8 10 6 4 0.1\n"),
+              testing::AllOf(HasSubstr("cameras.txt:1: camera 3"), HasSubstr("SIMPLE_DIVISION"),
+                             HasSubstr("colmap image_undistorter")));
+  EXPECT_THAT(error_of("3 EQUIRECTANGULAR 12 8 12 8\n"), HasSubstr("perspective views"));
+  std::filesystem::remove_all(Sparse());
+  for (const auto& [id, name, params] :
+       {std::tuple{11, "RAD_TAN_THIN_PRISM_FISHEYE", 16}, std::tuple{12, "SIMPLE_DIVISION", 4},
+        std::tuple{17, "EQUIRECTANGULAR", 2}, std::tuple{99, "99", 4}}) {
+    test::ColmapFiles files = BinaryColmapFiles(SmallColmapContents());
+    std::string& cameras = files.cameras;
+    cameras.resize(8 + 24 + 8 * static_cast<std::size_t>(params));
+    cameras[0] = 1;  // one camera
+    cameras[12] = static_cast<char>(id);
+    WriteFiles(files, ".bin");
+    EXPECT_THAT(ReadError(), testing::AllOf(HasSubstr(name), HasSubstr("not supported")));
+  }
 }
 
 }  // namespace

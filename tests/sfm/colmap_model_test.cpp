@@ -161,5 +161,40 @@ TEST_F(ColmapModel, LargestSubModelIsChosenWhateverItsNumber) {
               HasSubstr("contains no COLMAP model"));
 }
 
+TEST_F(ColmapModel, PhotographsMayBeReducedAndTracksFollow) {
+  WriteImages();
+  WriteBinary(SmallColmapContents());
+  const PosedImages whole = Read();
+  scratch_.WriteImage("images/c.ppm", 24, 16);
+  const PosedImages posed = Read();
+  const Camera &before = whole.cameras[whole.images[1].camera],
+               &after = posed.cameras[posed.images[1].camera];
+  EXPECT_EQ(after.width, 24);
+  EXPECT_EQ(after.params[0], 2 * before.params[0]);
+  // The other image of the same camera has its size still.
+  EXPECT_EQ(posed.cameras[posed.images[2].camera], before);
+  EXPECT_EQ(posed.points[0].track[0].pixel, 2 * whole.points[0].track[0].pixel);
+  EXPECT_EQ(posed.points[0].track[2].pixel, whole.points[0].track[2].pixel);
+}
+
+TEST_F(ColmapModel, SightingsOfRemovedImagesAreDroppedWithAWarning) {
+  WriteImages();
+  ColmapContents contents = SmallColmapContents();
+  contents.points[1].track[0].first = 1;  // no image has this id
+  WriteBinary(contents);
+  const PosedImages posed = Read();
+  EXPECT_EQ(posed.points[1].track.size(), contents.points[1].track.size() - 1);
+  EXPECT_THAT(posed.warnings, ElementsAre(HasSubstr("1 sightings are of images that are not in")));
+}
+
+TEST_F(ColmapModel, NamesMayDifferInCase) {
+  WriteImages();
+  fs::rename(scratch_.path() / "images/c.ppm", scratch_.path() / "images/C.PPM");
+  WriteBinary(SmallColmapContents());
+  const PosedImages posed = Read();
+  EXPECT_EQ(posed.images[1].name, "c.ppm");
+  EXPECT_EQ(posed.images[1].path.filename(), "C.PPM");
+}
+
 }  // namespace
 }  // namespace nerf::sfm

@@ -55,6 +55,23 @@ TEST_F(ColmapProgramTest, OptionsAreNamedAsTheProgramListsThem) {
   EXPECT_EQ(known(), "");
 }
 
+TEST_F(ColmapProgramTest, VersionIsTheOneThatHelpPrints) {
+  const auto version = [&](const std::string& line) {
+    fake_.Set("version", line + "\nUsage:\n");
+    return ColmapProgram::Find().Version();
+  };
+  EXPECT_EQ(version("COLMAP 3.8 -- Structure-from-Motion"), (std::array{3, 8, 0}));
+  EXPECT_EQ(version("COLMAP 3.10-dev -- Structure-from-Motion"), (std::array{3, 10, 0}));
+  EXPECT_EQ(version("COLMAP 4.1.1 (Commit a on b without CUDA)"), (std::array{4, 1, 1}));
+  EXPECT_EQ(version("another program"), (std::array{0, 0, 0}));
+  for (const auto& [line, resolves] :
+       {std::pair{"COLMAP 3.12.6", false}, std::pair{"COLMAP 3.13.0", true},
+        std::pair{"COLMAP 4.0.3", true}, std::pair{"COLMAP 4.0.4", false}}) {
+    fake_.Set("version", line);
+    EXPECT_EQ(ColmapProgram::Find().ResolvesLinks(), resolves) << line;
+  }
+}
+
 TEST_F(ColmapProgramTest, BothStreamsAreReadAndLoggedAndThereIsNoDisplay) {
   const auto outcome = RunMapper("echo one; echo two >&2; echo $QT_QPA_PLATFORM");
   EXPECT_EQ(outcome.exit_code, 0);
@@ -115,6 +132,9 @@ TEST(ParseProgress, ParsesOldAndNewLines) {
   expect("Matching block [2/3, 1/3] in 0.123s", 4, 9);
   expect("Matching image [3/120] in 0.1s", 3, 120);
   expect("Registering image #12 (34)", 34, 0);
+  expect("I20261129 10:00:00 12 pairing.cc:310] Processing block [2/3, 1/3]", 4, 9);
+  expect("Processing image [3/120]", 3, 120);
+  expect("I20261129 10:00:00 1 sfm.cc:1] Registering image #7 (num_reg_frames=6)", 6, 0);
   expect("  => Image sees 123 / 456 points", 0, 0);
   expect("Processed file [99999999999999/1]", 0, 0);
   expect("", 0, 0);

@@ -73,8 +73,11 @@ TEST_F(ColmapRunner, NewerProgramsGetTheNewOptionNames) {
   fake_.Set("help",
             "--FeatureExtraction.use_gpu arg\n--FeatureMatching.use_gpu arg\n"
             "--FeatureExtraction.num_threads arg\n--FeatureMatching.num_threads arg\n");
+  fake_.Set("version", "COLMAP 4.0.1 (Commit)\n");
   options_.threads = 3;
-  Run();
+  EXPECT_EQ(Run().images.size(), 6u);
+  // This version would name photographs by what symbolic links point to.
+  EXPECT_FALSE(fs::is_symlink(Workspace() / "images/p000.png"));
   EXPECT_THAT(fake_.Calls()[0], AllOf(HasSubstr("--FeatureExtraction.use_gpu 0"),
                                       HasSubstr("--FeatureExtraction.num_threads 3"),
                                       Not(HasSubstr("SiftExtraction"))));

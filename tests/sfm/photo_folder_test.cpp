@@ -138,5 +138,61 @@ TEST(PhotoFolder, FewerThanTwoReadableIsAnErrorWithTheCount) {
               AllOf(HasSubstr("only 1 of 3"), HasSubstr("b.png")));
 }
 
+TEST(PhotoFolder, PhotosInSubFoldersHaveThemInTheirNames) {
+  const ScratchFolder scratch;
+  for (const char* name : {"left/1.png", "right/1.png", "right/far/2.png", "masks/1.png",
+                           ".thumbs/1.png", "run/renders/1.png", "depth/1.png"}) {
+    fs::create_directories((scratch.path() / name).parent_path());
+    WritePhoto(scratch.path() / name, 20, 10);
+  }
+  scratch.Write("run/config.json", "{}");
+  const auto files = ListPhotos(scratch.path());
+  const PhotoFolder folder = CheckPhotos(files);
+  EXPECT_THAT(Names(folder), ElementsAre("left/1.png", "right/1.png", "right/far/2.png"));
+  EXPECT_EQ(DescribeSubFolders(files), "");
+  WritePhoto(scratch.path() / "top.png", 20, 10);
+  EXPECT_THAT(
+      DescribeSubFolders(ListPhotos(scratch.path())),
+      AllOf(HasSubstr("the 1 above them"), HasSubstr("left (1), right (1), right/far (1)")));
+}
+
+TEST(PhotoFolder, TheSamePhotographIsUsedOnce) {
+  const ScratchFolder scratch;
+  const std::string whole = FoxBytes();
+  scratch.Write("a.jpg", whole);
+  scratch.Write("b.jpg", whole);
+  WritePhoto(scratch.path() / "c.png", 20, 10);
+  PhotoFolder folder = CheckPhotos(ListPhotos(scratch.path()));
+  SkipDuplicates(folder);
+  EXPECT_THAT(Names(folder), ElementsAre("a.jpg", "c.png"));
+  EXPECT_THAT(SkippedNames(folder), ElementsAre("b.jpg"));
+  EXPECT_EQ(folder.skipped[0].reason, "the same file as a.jpg");
+  fs::remove(scratch.path() / "c.png");
+  folder = CheckPhotos(ListPhotos(scratch.path()));
+  EXPECT_THAT(InputErrorOf([&] { SkipDuplicates(folder); }), HasSubstr("only 1 of 2"));
+}
+
+TEST(PhotoFolder, ACropIsNoticedByItsExif) {
+  const ScratchFolder scratch;
+  const auto write = [&](const char* name, int exif_width, int exif_height) {
+    OIIO::ImageSpec spec(40, 30, 3, OIIO::TypeUInt8);
+    spec.attribute("Exif:PixelXDimension", exif_width);
+    spec.attribute("Exif:PixelYDimension", exif_height);
+    spec.attribute("FNumber", 2.0f);
+    const std::vector<unsigned char> pixels(40 * 30 * 3, static_cast<unsigned char>(exif_width));
+    const auto output = OIIO::ImageOutput::create((scratch.path() / name).string());
+    ASSERT_TRUE(output && output->open((scratch.path() / name).string(), spec));
+    ASSERT_TRUE(output->write_image(OIIO::TypeUInt8, pixels.data()) && output->close());
+  };
+  write("a-crop.jpg", 80, 40);
+  write("b-reduced.jpg", 400, 300);
+  write("c-turned.jpg", 30, 40);
+  write("d-same.jpg", 40, 30);
+  const auto photos = CheckPhotos(ListPhotos(scratch.path())).photos;
+  ASSERT_EQ(photos.size(), 4u);
+  EXPECT_TRUE(photos[0].cropped_after_exif);
+  for (int i = 1; i < 4; ++i) EXPECT_FALSE(photos[i].cropped_after_exif) << photos[i].name;
+}
+
 }  // namespace
 }  // namespace nerf::sfm

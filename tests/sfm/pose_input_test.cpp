@@ -109,5 +109,24 @@ TEST_F(PoseInput, FoxIsATransformsJson) {
   EXPECT_EQ(FindInput(NERF_TEST_DATA "/fox/images").kind, InputKind::kPhotos);
 }
 
+TEST_F(PoseInput, ReducedPhotographsOfAModelAreFound) {
+  WriteModel("p/sparse/0");
+  WritePhotos("p/images_4");
+  ExpectFound("p", InputKind::kColmap, "p/sparse/0", "p/images_4");
+  ExpectFound("p/sparse/0", InputKind::kColmap, "p/sparse/0", "p/images_4");
+  WritePhotos("p/images");
+  ExpectFound("p", InputKind::kColmap, "p/sparse/0", "p/images");
+}
+
+TEST_F(PoseInput, PhotographsMayBeInSubFolders) {
+  scratch_.WriteImage("p/left/1.jpg", 6, 5);
+  scratch_.WriteImage("p/right/1.jpg", 6, 5);
+  ExpectFound("p", InputKind::kPhotos, "", "p");
+  scratch_.WriteImage("q/images/left/1.jpg", 6, 5);
+  ExpectFound("q", InputKind::kPhotos, "", "q/images");
+  scratch_.WriteImage("r/masks/1.jpg", 6, 5);
+  EXPECT_THAT(FindError("r"), HasSubstr("contains no photographs"));
+}
+
 }  // namespace
 }  // namespace nerf::sfm

@@ -7,58 +7,20 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/input_error_of.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/transforms_json_file.h"
 
 namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
 using nerf::test::InputErrorOf;
+using nerf::test::Frame;
 using nerf::test::ScratchFolder;
+using nerf::test::TransformsJson;
+using nerf::test::TwoFrames;
 using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-const json kIdentity = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-
-json Frame(const std::string& file_path) {
-  return {{"file_path", file_path}, {"transform_matrix", kIdentity}};
-}
-
-// Two frames of 20x10 pixels.
-json TwoFrames() {
-  return {{"fl_x", 30},
-          {"fl_y", 31},
-          {"w", 20},
-          {"h", 10.0},
-          {"frames", {Frame("images/b.ppm"), Frame("./images/a.ppm")}}};
-}
-
-class TransformsJson : public testing::Test {
- protected:
-  TransformsJson() {
-    scratch_.WriteImage("images/a.ppm", 20, 10);
-    scratch_.WriteImage("images/b.ppm", 20, 10);
-  }
-  PosedImages Read(const std::string& text) {
-    return ReadTransformsJson(scratch_.Write("transforms.json", text));
-  }
-  PosedImages Read(const json& root) { return Read(root.dump()); }
-  // Accepts text or JSON.
-  template <class T>
-  std::string ReadError(const T& contents) {
-    return InputErrorOf([&] { Read(contents); });
-  }
-  Camera ReadCamera(const json& keys) {
-    json root = TwoFrames();
-    root.update(keys);
-    const PosedImages posed = Read(root);
-    EXPECT_EQ(posed.cameras.size(), 1u);
-    return posed.cameras.at(0);
-  }
-  ScratchFolder scratch_;
-};
 
 TEST_F(TransformsJson, FramesAreSortedAndShareOneCamera) {
   json root = TwoFrames();
@@ -242,10 +204,13 @@ TEST_F(TransformsJson, InvalidFramesAreRefusedByIndexAndKey) {
   EXPECT_THAT(error_with("/w", 0), HasSubstr("transforms.json: w must be a whole number"));
   EXPECT_THAT(error_with("/h", 1e300), HasSubstr("transforms.json: h must be a whole number"));
   EXPECT_THAT(error_with("/w", 10.5), HasSubstr("w must be a whole number"));
-  EXPECT_THAT(error_with("/cx", nullptr), HasSubstr("cx must be a finite number"));
+  EXPECT_THAT(ReadError(std::string(R"({"cx": NaN, "frames": [{"file_path": "images/a.ppm"}]})")),
+              HasSubstr("transform_matrix is missing"));
   EXPECT_THAT(error_with("/is_fisheye", 1), HasSubstr("is_fisheye must be true or false"));
   EXPECT_THAT(error_with("/equirectangular", true), HasSubstr("not supported"));
-  EXPECT_THAT(error_with("/camera_model", "PANORAMA"), HasSubstr("'PANORAMA' is none of COLMAP's"));
+  EXPECT_THAT(error_with("/camera_model", "PANORAMA"),
+              HasSubstr("PANORAMA is not supported; undistort"));
+  EXPECT_THAT(error_with("/camera_model", "EQUIRECTANGULAR"), HasSubstr("perspective views"));
   EXPECT_THAT(error_with("/camera_model", "FOV"), HasSubstr("\"camera_params\""));
   EXPECT_THAT(error_with("/camera_params", {1}), HasSubstr("camera_params needs \"camera_model\""));
   json root = TwoFrames();

@@ -14,6 +14,7 @@ namespace nerf::test {
 // A fake program `colmap`, first in PATH during the lifetime of this object. It records its calls
 // and writes made-up text models. Files beside it define its behaviour:
 //   help               output of COMMAND -h
+//   version            output of help
 //   models             models that `mapper` writes, one per line: number and count of images
 //   models_relaxed     the same for the call with lower thresholds
 //   do_COMMAND         shell commands to run instead
@@ -28,6 +29,7 @@ class FakeColmap {
         "--SiftExtraction.first_octave arg\n"
         "--SiftMatching.use_gpu arg\n--ExhaustiveMatching.block_size arg\n"
         "--SequentialMatching.overlap arg\n");
+    Set("version", "COLMAP 3.8 -- Structure-from-Motion and Multi-View Stereo\n");
     Set("models", "");
     Set("models_relaxed", "");
     Set("size", "64 48");
@@ -63,6 +65,7 @@ class FakeColmap {
   static constexpr const char* kScript = R"sh(#!/bin/sh
 here=$(dirname "$0")
 command=$1
+if [ "$1" = help ]; then cat "$here/version"; exit 0; fi
 if [ "$2" = -h ]; then cat "$here/help"; exit 0; fi
 echo "$@" >> "$here/calls"
 models=$here/models

@@ -19,6 +19,8 @@ inline void WritePhoto(const std::filesystem::path& file, int width, int height,
                        int channels = 3) {
   OIIO::ImageSpec spec(width, height, channels, format);
   spec.attribute("Orientation", orientation);
+  // Photographs are not the same byte for byte.
+  spec.attribute("ImageDescription", file.filename().string());
   std::vector<float> pixels(static_cast<std::size_t>(width) * height * channels);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const int x = static_cast<int>(i / channels) % width;

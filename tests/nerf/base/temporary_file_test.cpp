@@ -1,9 +1,12 @@
 #include "nerf/base/temporary_file.h"
 
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
+#include <set>
 #include <string>
 
 #include "nerf/base/input_error.h"
@@ -54,6 +57,29 @@ TEST_F(TemporaryFileTest, RefusesAMissingFolder) {
 TEST_F(TemporaryFileTest, ThrowsWhereThereIsNothingToKeep) {
   TemporaryFile file(folder_ / "a.txt");
   EXPECT_THROW(file.Keep(), InputError);
+}
+
+TEST_F(TemporaryFileTest, OfAKilledWriterIsRemovedByTheNextRun) {
+  const pid_t writer = fork();
+  if (writer == 0) {
+    for (const char* name : {"checkpoint.nerf", "picture.png"}) {
+      auto* const abandoned = new TemporaryFile(folder_ / name);
+      std::ofstream(abandoned->path()) << "half";
+    }
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(writer, &status, 0), writer);
+  std::ofstream(folder_ / fmt::format("checkpoint.nerf.tmp{}", writer)) << "of an earlier version";
+  const TemporaryFile ours(folder_ / "ours.txt");
+  std::ofstream(ours.path()) << "being written";
+  std::ofstream(folder_ / ".other.tmp-anothermachine-1-0.txt") << "being written elsewhere";
+  std::ofstream(folder_ / "notes.tmp") << "the user's";
+  RemoveAbandonedFiles(folder_);
+  std::set<std::string> left;
+  for (const auto& entry : fs::directory_iterator(folder_)) left.insert(entry.path().filename());
+  EXPECT_EQ(left, (std::set<std::string>{ours.path().filename(), "notes.tmp",
+                                         ".other.tmp-anothermachine-1-0.txt"}));
 }
 
 }  // namespace

@@ -81,7 +81,8 @@ TEST(OlatCapture, OrdersImagesByNumberAndFindsTheMask) {
   EXPECT_EQ(capture.images[0].filename(), "a.1.png");
   EXPECT_EQ(capture.images[1].filename(), "a.2.png");
   EXPECT_EQ(capture.images[2].filename(), "a.10.png");
-  EXPECT_EQ(capture.mask->filename(), "a.mask.png");
+  ASSERT_EQ(capture.masks.size(), 1u);
+  EXPECT_EQ(capture.masks[0].filename(), "a.mask.png");
   EXPECT_EQ(capture.width, 8);
   EXPECT_EQ(capture.height, 6);
 }
@@ -188,6 +189,49 @@ TEST(OlatCapture, ErrorsNameWhatIsMissing) {
   EXPECT_THAT(error("a"), AllOf(HasSubstr("3.png"), HasSubstr("9 x 6")));
   scratch.WriteImage("b/1.png", 8, 6);
   EXPECT_THAT(error(""), HasSubstr("2 subjects"));
+}
+
+TEST(OlatCapture, ReadsAFolderOfDiLiGenTAsItIs) {
+  const test::ScratchFolder scratch;
+  for (const char* name : {"001.png", "002.png", "010.png", "mask.png", "Normal_gt.png"}) {
+    scratch.WriteImage(std::filesystem::path("ballPNG") / name, 8, 6);
+  }
+  scratch.Write("ballPNG/filenames.txt", "010.png\n001.png\n002.png\n");
+  scratch.Write("ballPNG/light_directions.txt", kThreeLights);
+  scratch.Write("ballPNG/light_intensities.txt", "1 1 1\n2 2 2\n3 3 3\n");
+  const OlatCapture capture = FindOlatCapture(scratch.path() / "ballPNG", {});
+  ASSERT_EQ(capture.images.size(), 3u);
+  EXPECT_EQ(capture.images[0].filename(), "010.png");
+  ASSERT_EQ(capture.masks.size(), 1u);
+  EXPECT_NEAR(capture.lights[2].irradiance.x(), 3 * std::numbers::pi, 1e-12);
+  // Without the list, in the order of the numbers.
+  std::filesystem::remove(scratch.path() / "ballPNG/filenames.txt");
+  EXPECT_EQ(FindOlatCapture(scratch.path() / "ballPNG", {}).images[2].filename(), "010.png");
+}
+
+TEST(OlatCapture, FollowsTheNamesInAnLpFile) {
+  const test::ScratchFolder scratch;
+  for (const char* name : {"a.png", "b.png", "c.png"}) scratch.WriteImage(name, 8, 6);
+  scratch.Write("dome.lp", "3\nscans/c.jpg 0 0 1\nscans/A.jpg 1 0 0\nscans/b.jpg 0 1 0\n");
+  const OlatCapture capture = FindOlatCapture(scratch.path(), {});
+  EXPECT_TRUE(capture.lights[0].to_light.isApprox(Vector3d::UnitX()));
+  EXPECT_TRUE(capture.lights[1].to_light.isApprox(Vector3d::UnitY()));
+  EXPECT_TRUE(capture.lights[2].to_light.isApprox(Vector3d::UnitZ()));
+  scratch.Write("dome.lp", "c.jpg 0 0 1\na.jpg 1 0 0\n");
+  EXPECT_THAT(test::InputErrorOf([&] { FindOlatCapture(scratch.path(), {}); }),
+              HasSubstr("no light for the image b.png"));
+}
+
+TEST(OlatCapture, OfACarnivalMaskHasImages) {
+  const test::ScratchFolder scratch;
+  for (const char* name : {"mask_1.png", "mask_2.png", "mask_3.png"})
+    scratch.WriteImage(name, 8, 6);
+  scratch.Write("lights.txt", kThreeLights);
+  const OlatCapture capture = FindOlatCapture(scratch.path(), {});
+  EXPECT_EQ(capture.images.size(), 3u);
+  EXPECT_TRUE(capture.masks.empty());
+  scratch.WriteImage("mask.png", 8, 6);
+  EXPECT_EQ(FindOlatCapture(scratch.path(), {}).masks.size(), 1u);
 }
 
 }  // namespace

@@ -57,6 +57,20 @@ TEST(EnvironmentMap, HasTheDocumentedOrientation) {
   EXPECT_TRUE(map.Radiance(-Vector3d::UnitY()).isZero());
 }
 
+TEST(EnvironmentMap, WhatResamplingOvershootsIsTakenAsBlack) {
+  Image image = Black(32);
+  for (float& value : image.pixels) value = 0.5f;
+  image.pixels[3] = -1e-5f;
+  image.pixels[90] = -0.3f;
+  const EnvironmentMap map(image, "resampled");
+  EXPECT_EQ(map.At(1, 0).x(), 0);
+  EXPECT_EQ(map.At(30, 0).x(), 0);
+  // More than a thousandth of the light is no rounding.
+  for (int i = 0; i < 40; ++i) image.pixels[3 * i] = -0.3f;
+  EXPECT_THAT(test::InputErrorOf([&] { EnvironmentMap(image, "wrong.exr"); }),
+              AllOf(HasSubstr("wrong.exr"), HasSubstr("pixel (0, 0) is -0.3")));
+}
+
 TEST(EnvironmentMap, DirectionsMapBackToTheirPixelsAndCoverTheSphere) {
   const EnvironmentMap map = SkyWithASun(16);
   double sum = 0;

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 TEST(LightFile, ReadsDirectionsOfAnyLengthWithOptionalIntensities) {
   const test::ScratchFolder scratch;
   const auto lights =
-      ReadLights(scratch.Write("lights.txt", "3\n0 0 2\n\n3 0 4 2 # bright\n0 1 0 1 2 3\n"));
+      ReadLights(scratch.Write("lights.txt", "3\n0 0 2\n\n3 0 4 2 # bright\n0 1 0 1 2 3\n")).lights;
   ASSERT_EQ(lights.size(), 3u);
   EXPECT_TRUE(lights[0].to_light.isApprox(Eigen::Vector3d::UnitZ()));
   EXPECT_NEAR(lights[0].irradiance.x(), std::numbers::pi, 1e-12);
@@ -39,7 +39,7 @@ TEST(LightFile, IsReadBackUnchanged) {
     lights.push_back({FibonacciDirection(i, 200), scale * Color(1 + i, 0.3, 1.0 / (1 + i))});
   }
   WriteLights(scratch.path() / "lights.txt", lights);
-  const auto back = ReadLights(scratch.path() / "lights.txt");
+  const auto back = ReadLights(scratch.path() / "lights.txt").lights;
   ASSERT_EQ(back.size(), lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
     EXPECT_LT((back[i].to_light - lights[i].to_light).norm(), 1e-8) << i;
@@ -76,6 +76,39 @@ TEST(LightFile, ErrorsNameTheFileAndTheLine) {
   EXPECT_THAT(error("0 0 1 -1\n"), HasSubstr("above 0"));
   EXPECT_THAT(error("3\n0 0 1\n1 0 1\n"), AllOf(HasSubstr("announces 3"), HasSubstr("2 follow")));
   EXPECT_THAT(error("# none\n"), HasSubstr("no lights"));
+}
+
+TEST(LightFile, MayNameItsImages) {
+  const test::ScratchFolder scratch;
+  const LightList list = ReadLights(scratch.Write(
+      "coin.lp",
+      "3\r\ncoin 01.jpg 0 0 1\r\n\"C:\\my scans\\coin_2.JPG\" 1 0 0\r\n/a/3.png\t0 1 0 2\r\n"));
+  EXPECT_EQ(list.images, (std::vector<std::string>{"coin 01.jpg", "coin_2.JPG", "3.png"}));
+  EXPECT_TRUE(list.lights[1].to_light.isApprox(Eigen::Vector3d::UnitX()));
+  EXPECT_TRUE(list.has_intensities);
+  const auto error = [&](const char* text) {
+    return test::InputErrorOf([&] { ReadLights(scratch.Write("coin.lp", text)); });
+  };
+  EXPECT_THAT(error("a.jpg 0 0 1\n0 1 0\n"),
+              AllOf(HasSubstr("coin.lp:2"), HasSubstr("every line")));
+  EXPECT_THAT(error("a.jpg 0,5 0,1 0,9\n"), AllOf(HasSubstr("coin.lp:1"), HasSubstr("points")));
+}
+
+TEST(LightFile, OfDirectionsHasTheIntensitiesBesideIt) {
+  const test::ScratchFolder scratch;
+  const auto directions = scratch.Write("light_directions.txt", "0 0 1\n1 0 0\n");
+  EXPECT_FALSE(ReadLights(directions).has_intensities);
+  scratch.Write("light_intensities.txt", "1 2 3\n4\n");
+  const LightList list = ReadLights(directions);
+  EXPECT_TRUE(list.has_intensities);
+  EXPECT_TRUE(list.lights[0].irradiance.isApprox(std::numbers::pi * Color(1, 2, 3)));
+  EXPECT_TRUE(list.lights[1].irradiance.isApprox(std::numbers::pi * Color(4, 4, 4)));
+  scratch.Write("light_intensities.txt", "1 2 3\n");
+  EXPECT_THAT(test::InputErrorOf([&] { ReadLights(directions); }),
+              HasSubstr("1 intensities for 2 lights"));
+  scratch.Write("light_intensities.txt", "1 2 3\n0 1 1\n");
+  EXPECT_THAT(test::InputErrorOf([&] { ReadLights(directions); }),
+              HasSubstr("light_intensities.txt:2"));
 }
 
 }  // namespace
