@@ -1,6 +1,5 @@
 #include "sfm/masks.h"
 
-#include <iterator>
 #include <system_error>
 
 #include "nerf/image/image_files.h"
@@ -9,16 +8,6 @@ namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The folder in which an image has its name: "photos" for photos/left/1.jpg of the name left/1.jpg.
-fs::path RootOf(const PosedImage& image) {
-  fs::path root = image.path;
-  const fs::path name = image.name;
-  for (auto parts = std::distance(name.begin(), name.end()); parts > 0; --parts) {
-    root = root.parent_path();
-  }
-  return root;
-}
 
 void FindMask(PosedImage& image) {
   const fs::path folder = image.path.parent_path(), root = RootOf(image);

@@ -1,5 +1,6 @@
 #include "sfm/pose_input.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/image/image_files.h"
 #include "sfm/colmap_model.h"
+#include "sfm/film.h"
 #include "sfm/llff.h"
 #include "sfm/photo_folder.h"
 #include "sfm/transforms_json.h"
@@ -76,6 +78,17 @@ fs::path FindColmapImages(const fs::path& input, const fs::path& model) {
   return best;
 }
 
+std::vector<fs::path> FilmsIn(const fs::path& folder) {
+  std::vector<fs::path> films;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const bool hidden = it->path().filename().string().starts_with('.');
+    if (!hidden && HasFilmExtension(it->path()) && IsFile(it->path())) films.push_back(it->path());
+  }
+  std::ranges::sort(films);
+  return films;
+}
+
 InputLocation FindInFolder(const fs::path& input) {
   for (const char* name : {"transforms.json", "transforms_train.json"}) {
     if (IsFile(input / name)) return {InputKind::kTransforms, input / name, input};
@@ -91,6 +104,12 @@ InputLocation FindInFolder(const fs::path& input) {
   }
   for (const fs::path& folder : {input / "images", input}) {
     if (!PhotosBelow(folder).empty()) return {InputKind::kPhotos, {}, folder};
+  }
+  const std::vector<fs::path> films = FilmsIn(input);
+  if (films.size() == 1) return {InputKind::kFilm, {}, films[0]};
+  if (films.size() > 1) {
+    throw InputError("{}: contains {} films; give one of them, such as {}", input.string(),
+                     films.size(), films[0].string());
   }
   throw InputError(
       "{}: contains no photographs and no poses (neither transforms.json, transforms_train.json, "
@@ -112,9 +131,11 @@ InputLocation FindInput(const fs::path& input) {
   if (input.filename() == "poses_bounds.npy") {
     return {InputKind::kLlff, input, LlffImageFolder(FolderOf(input))};
   }
+  if (HasFilmExtension(input)) return {InputKind::kFilm, {}, input};
   throw InputError(
-      "{}: not an input; give a folder of photographs, a COLMAP project, an LLFF folder, or a "
-      "transforms.json",
+      "{}: not an input; give a folder of photographs, a film, a COLMAP project, an LLFF folder, "
+      "or "
+      "a transforms.json",
       input.string());
 }
 
@@ -127,10 +148,12 @@ PosedImages ReadPosedInput(const InputLocation& location) {
     case InputKind::kLlff:
       return ReadLlff(FolderOf(location.model));
     case InputKind::kPhotos:
+    case InputKind::kFilm:
       break;
   }
-  throw InputError("{}: photographs without poses; find them first with nerf poses",
-                   location.images.string());
+  throw InputError("{}: {} without poses; find them first with nerf poses",
+                   location.images.string(),
+                   location.kind == InputKind::kFilm ? "a film" : "photographs");
 }
 
 }  // namespace nerf::sfm

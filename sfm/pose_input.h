@@ -6,14 +6,14 @@
 
 namespace nerf::sfm {
 
-enum class InputKind { kTransforms, kColmap, kLlff, kPhotos };
+enum class InputKind { kTransforms, kColmap, kLlff, kPhotos, kFilm };
 
 // The kind of an input and its files.
 struct InputLocation {
   InputKind kind = InputKind::kPhotos;
-  // JSON file, COLMAP model folder, or poses_bounds.npy; empty for photographs without poses.
+  // JSON file, COLMAP model folder, or poses_bounds.npy; empty without poses.
   std::filesystem::path model;
-  std::filesystem::path images;  // folder of the photographs
+  std::filesystem::path images;  // folder of the photographs; for kFilm, the film
 };
 
 // Finds the poses and photographs of an input path. Tries in this order:
@@ -26,10 +26,11 @@ struct InputLocation {
 //                                          itself, or in images_2, images_4 or images_8, whichever
 //                                          contains most of the model's images
 //   image files in the folder or below it  photographs without poses
+//   a film, or a folder with one           a film
 // Throws InputError when the input is missing or none of these, with the list of what was tried.
 InputLocation FindInput(const std::filesystem::path& input);
 
-// Reads an input with poses. Throws InputError for kPhotos, and as ReadTransformsJson,
+// Reads an input with poses. Throws InputError for kPhotos and kFilm, and as ReadTransformsJson,
 // ReadColmapModel and ReadLlff do.
 PosedImages ReadPosedInput(const InputLocation& location);
 

@@ -33,6 +33,7 @@ struct EvalArguments {
   std::string split = "test";
   double quality = 1;
   bool fit_exposure = false;
+  std::optional<int> downscale;
   bool effects = false;
   int effects_steps = 500;
   int threads = 0;
@@ -74,11 +75,15 @@ Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
     throw InputError("{}: the run has no {} images; choose another --split", arguments.run,
                      arguments.split);
   }
+  if (arguments.downscale && *arguments.downscale < 1) {
+    throw InputError("--downscale {}: use 1 or more", *arguments.downscale);
+  }
   ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
   std::vector<ContactSheetRow> rows;
   std::int64_t done = 0;
   const Evaluation evaluation =
-      Evaluate(*run.model, run.posed, images, {arguments.quality, arguments.fit_exposure, {}},
+      Evaluate(*run.model, run.posed, images,
+               {arguments.quality, arguments.fit_exposure, arguments.downscale},
                [&](const EvaluatedView& view) {
                  const std::string psnr = fmt::format("{:.2f} dB", view.score->psnr);
                  if (rows.size() < kMaxRows) {
@@ -87,13 +92,14 @@ Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
                  progress.Update(++done, psnr);
                });
   progress.Finish();
+  if (evaluation.scores.empty()) {
+    throw InputError("{}: none of the {} {} images could be read; the first: {}", arguments.run,
+                     images.size(), arguments.split, evaluation.unreadable.front());
+  }
   for (const std::string& reason : evaluation.unreadable) spdlog::warn("{}; skipped", reason);
   if (!evaluation.unreadable.empty()) {
     spdlog::warn("{} of {} images could not be read; the mean is over the others",
                  evaluation.unreadable.size(), images.size());
-  }
-  if (evaluation.scores.empty()) {
-    throw InputError("{}: none of the {} images could be read", arguments.run, arguments.split);
   }
   WriteImage(output / "contact_sheet.png", ContactSheet(rows));
   return evaluation;
@@ -112,13 +118,14 @@ void RunEval(const EvalArguments& arguments) {
   }
   const Evaluation evaluation = EvaluateViews(run, arguments, output);
   nlohmann::json result = JsonFromEvaluation(evaluation);
-  result.update({{"split", arguments.split},
-                 {"downscale", run.model->GetModel().config.data.downscale},
-                 {"quality", arguments.quality},
-                 {"exposure_fitted", evaluation.exposure_fitted},
-                 {"step", run.model->Step()},
-                 {"training_seconds", run.training_seconds},
-                 {"left_out", evaluation.unreadable.size()}});
+  result.update(
+      {{"split", arguments.split},
+       {"downscale", arguments.downscale.value_or(run.model->GetModel().config.data.downscale)},
+       {"quality", arguments.quality},
+       {"exposure_fitted", evaluation.exposure_fitted},
+       {"step", run.model->Step()},
+       {"training_seconds", run.training_seconds},
+       {"left_out", evaluation.unreadable.size()}});
   // File names may not be valid UTF-8.
   const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
   WriteFileAtomically(output / "eval.json", text + "\n");
@@ -151,6 +158,8 @@ void AddEvalCommand(CLI::App& app) {
   command->add_flag("--fit-exposure", arguments->fit_exposure,
                     "render each view at the exposure fitted to its photograph; always on for runs "
                     "that simulate exposures, to compare others with them");
+  command->add_option("--downscale", arguments->downscale,
+                      "reduce photographs by this factor [that of the training]");
   command->add_flag("--effects", arguments->effects,
                     "instead: measure gain and cost of each simulated effect by short trainings");
   command->add_option("--effects-steps", arguments->effects_steps, "steps of each short training")

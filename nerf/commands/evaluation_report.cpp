@@ -35,6 +35,8 @@ nlohmann::json JsonFromEvaluation(const Evaluation& evaluation) {
             {"networks", cost.PerView(cost.seconds.networks)},
             {"compositing", cost.PerView(cost.seconds.compositing)},
             {"reading_photographs", cost.PerView(cost.reading)}}},
+          {"width", cost.width},
+          {"height", cost.height},
           {"samples_per_ray", cost.SamplesPerRay()},
           {"peak_megabytes", PeakMegabytes()},
           {"images", images}};
@@ -50,8 +52,8 @@ void PrintEvaluation(const Evaluation& evaluation) {
   };
   for (const ViewScore& s : evaluation.scores) row(s);
   row(evaluation.Mean());
-  fmt::print("{:.1f} samples per ray, {:.0f} MB peak memory\n", cost.SamplesPerRay(),
-             PeakMegabytes());
+  fmt::print("{} x {} pixels, {:.1f} samples per ray, {:.0f} MB peak memory\n", cost.width,
+             cost.height, cost.SamplesPerRay(), PeakMegabytes());
   if (cost.seconds.Sum() == 0) return;  // the renderer does not time its stages
   fmt::print(
       "per frame: sampling {:.2f} s, encoding {:.2f} s, networks {:.2f} s, compositing {:.2f} s, "

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "nerf/base/input_error.h"
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/threads.h"
@@ -56,7 +57,11 @@ nlohmann::json JsonFrom(const PosedImages& posed, const Inspection& inspection) 
 PosedImages WithoutPoses(const std::filesystem::path& folder) {
   PosedImages photographs;
   photographs.source = folder;
-  for (const sfm::PhotoFile& file : sfm::ListPhotos(folder)) {
+  const std::vector<sfm::PhotoFile> files = sfm::ListPhotos(folder);
+  if (const std::string text = sfm::DescribeSubFolders(files); !text.empty()) {
+    photographs.warnings.push_back(fmt::format("{}: {}", folder.string(), text));
+  }
+  for (const sfm::PhotoFile& file : files) {
     PosedImage image;
     image.name = file.name;
     image.path = file.path;
@@ -69,6 +74,10 @@ PosedImages WithoutPoses(const std::filesystem::path& folder) {
 void RunInspect(const InspectArguments& arguments) {
   UseThreads(arguments.threads);
   const sfm::InputLocation location = sfm::FindInput(arguments.input);
+  if (location.kind == sfm::InputKind::kFilm) {
+    throw InputError("{}: a film, without poses; run nerf poses on it, and inspect its output",
+                     location.images.string());
+  }
   const bool has_poses = location.kind != sfm::InputKind::kPhotos;
   PosedImages posed = has_poses ? sfm::ReadPosedInput(location) : WithoutPoses(location.images);
   sfm::FindMasks(posed);

@@ -6,10 +6,13 @@
 #include <memory>
 #include <string>
 
+#include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
+#include "nerf/commands/training_display.h"
 #include "sfm/colmap_runner.h"
+#include "sfm/film.h"
 #include "sfm/transforms_json.h"
 
 namespace nerf {
@@ -20,6 +23,7 @@ namespace fs = std::filesystem;
 struct PosesArguments {
   std::string folder;
   std::string output;
+  int frames = 0;
   sfm::ColmapOptions colmap;
 };
 
@@ -48,6 +52,8 @@ void PrintReport(const sfm::ColmapReport& report, const fs::path& transforms) {
 void RunPoses(const PosesArguments& arguments) {
   fs::path folder = fs::absolute(arguments.folder).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // a trailing slash
+  const bool is_film = sfm::HasFilmExtension(folder) && fs::is_regular_file(folder);
+  if (is_film) folder.replace_extension();
   const fs::path output = arguments.output.empty()
                               ? fs::path("runs") / (folder.filename().string() + "-poses")
                               : fs::path(arguments.output);
@@ -59,8 +65,17 @@ void RunPoses(const PosesArguments& arguments) {
         transforms.string());
   }
   sfm::ColmapReport report;
-  const PosedImages posed =
-      sfm::PosesFromPhotos(arguments.folder, workspace, arguments.colmap, &report);
+  sfm::ColmapOptions colmap = arguments.colmap;
+  fs::path photos = arguments.folder;
+  if (is_film) {
+    photos = output / "frames";
+    MakeOutputFolder(output);
+    const sfm::FilmFrames frames = sfm::ExtractFrames(arguments.folder, photos, arguments.frames);
+    fmt::print("{}: {}\n", arguments.folder, DescribeFrames(frames, photos));
+    std::fflush(stdout);
+    if (colmap.matcher == "auto") colmap.matcher = "sequential";
+  }
+  const PosedImages posed = sfm::PosesFromPhotos(photos, workspace, colmap, &report);
   sfm::WriteTransformsJson(posed, transforms);
   PrintReport(report, transforms);
 }
@@ -72,7 +87,7 @@ void AddPosesCommand(CLI::App& app) {
       app.add_subcommand("poses", "Finds the camera poses of a folder of photographs, with COLMAP");
   const auto arguments = std::make_shared<PosesArguments>();
   sfm::ColmapOptions& colmap = arguments->colmap;
-  command->add_option("FOLDER", arguments->folder, "Folder of photographs")->required();
+  command->add_option("INPUT", arguments->folder, "Folder of photographs, or a film")->required();
   command->add_option("-o,--output", arguments->output,
                       "Folder for transforms.json and colmap/; default: runs/<name>-poses");
   command
@@ -90,12 +105,18 @@ void AddPosesCommand(CLI::App& app) {
       ->add_option("--max-features", colmap.max_num_features,
                    "Features per photograph; the time to match grows with the square")
       ->capture_default_str();
+  command
+      ->add_option("--frames", arguments->frames,
+                   "Frames to use of a film; 0: three a second, 40 to 150")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
   command->add_option("--threads", colmap.threads, "Threads; 0: all cores")->capture_default_str();
   command->footer(
       "After an interruption, run it again to continue; finished steps are skipped.\n"
       "Examples:\n"
       "  nerf poses photos/fox\n"
       "  nerf poses photos/fox -o fox-poses --max-image-size 3200\n"
+      "  nerf poses clip.mp4 --frames 120\n"
       "  nerf poses frames --matcher sequential --camera-model OPENCV_FISHEYE");
   command->callback([arguments] { RunPoses(*arguments); });
 }

@@ -15,6 +15,7 @@
 #include "nerf/commands/threads.h"
 #include "nerf/commands/training_display.h"
 #include "nerf/pipeline/training_session.h"
+#include "sfm/film.h"
 
 namespace nerf {
 namespace {
@@ -29,6 +30,7 @@ struct TrainArguments {
   std::vector<std::string> assignments;
   std::string effects = "auto";
   std::optional<int> downscale;
+  std::optional<int> frames;
   std::optional<double> time_budget;  // seconds
   std::optional<double> target_psnr;  // dB
   int threads = 0;
@@ -45,6 +47,7 @@ fs::path RunFolder(const TrainArguments& arguments) {
   if (!name.has_filename()) name = name.parent_path();  // a slash at the end
   // photos/fox/transforms.json is named fox.
   if (name.extension() == ".json") name = name.parent_path();
+  if (sfm::HasFilmExtension(name)) name.replace_extension();
   return fs::path("runs") / name.filename();
 }
 
@@ -53,6 +56,9 @@ std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
   std::vector<std::string> assignments = arguments.assignments;
   if (arguments.downscale) {
     assignments.push_back(fmt::format("data.downscale={}", *arguments.downscale));
+  }
+  if (arguments.frames) {
+    assignments.push_back(fmt::format("data.film_frames={}", *arguments.frames));
   }
   if (arguments.time_budget) {
     assignments.push_back(fmt::format("train.time_budget={}", *arguments.time_budget));
@@ -71,7 +77,7 @@ TrainingRequest RequestOf(const TrainArguments& arguments) {
     if (!request.assignments.empty() || arguments.preset_is_given || arguments.effects != "auto") {
       throw InputError(
           "--resume continues with the run's configuration; omit --config, --set, --effects, "
-          "--downscale, --time-budget and --target-psnr");
+          "--downscale, --frames, --time-budget and --target-psnr");
     }
     return request;
   }
@@ -109,7 +115,7 @@ void AddTrainCommand(CLI::App& app) {
   auto* command = app.add_subcommand("train", "Trains a radiance field from photographs");
   const auto arguments = std::make_shared<TrainArguments>();
   command->add_option("input", arguments->input,
-                      "folder of photos, COLMAP project, transforms.json, or LLFF folder");
+                      "folder of photos, film, COLMAP project, transforms.json, or LLFF folder");
   command->add_option("-o,--output", arguments->output, "run folder [runs/INPUT]");
   auto* preset = command
                      ->add_option("--config", arguments->preset,
@@ -124,6 +130,8 @@ void AddTrainCommand(CLI::App& app) {
                    "+exposure,-view_dependence: these on and off, the others auto")
       ->capture_default_str();
   command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
+  command->add_option("--frames", arguments->frames,
+                      "of a film: how many to use [three a second, 40 to 150]");
   command
       ->add_option("--time-budget", arguments->time_budget,
                    "end after this time: 90, 30s, 2m, 1h; chooses the preset without --config")
@@ -145,6 +153,7 @@ void AddTrainCommand(CLI::App& app) {
       "  nerf train photos/fox/transforms.json --config fast --set train.steps=2000\n"
       "  nerf train photos/fox/transforms.json --time-budget 2m --target-psnr 30\n"
       "  nerf train photos/fox --effects +exposure,-view_dependence\n"
+      "  nerf train clip.mp4 --frames 100\n"
       "  nerf train --resume -o runs/fox");
   command->callback([arguments, preset] {
     arguments->preset_is_given = preset->count() > 0;

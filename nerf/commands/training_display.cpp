@@ -36,11 +36,28 @@ void Print(fmt::format_string<Args...> format, Args&&... args) {
 
 }  // namespace
 
+std::string DescribeFrames(const sfm::FilmFrames& frames, const std::filesystem::path& folder) {
+  std::string text =
+      fmt::format("{} frames of {:.1f} s in {}", frames.frames, frames.seconds, folder.string());
+  if (frames.blurred > 0) text += fmt::format("; {} blurred parts passed over", frames.blurred);
+  if (frames.existed) text += " (taken before)";
+  return text;
+}
+
 void TrainingDisplay::operator()(const PipelineEvent& event) {
   std::visit([this](const auto& e) { Show(e); }, event);
 }
 
 void TrainingDisplay::Show(const Warning& event) { spdlog::warn("{}", event.text); }
+
+void TrainingDisplay::Show(const WaitEstimated& event) {
+  Print("{} photographs: their poses take about {}, then training about {}\n", event.photographs,
+        FormatDuration(event.pose_seconds), FormatDuration(event.training_seconds));
+}
+
+void TrainingDisplay::Show(const FilmRead& event) {
+  Print("{}: {}\n", event.film.string(), DescribeFrames(event.frames, event.folder));
+}
 
 void TrainingDisplay::Show(const PosesFound& event) {
   const sfm::ColmapReport& report = event.report;
@@ -49,6 +66,11 @@ void TrainingDisplay::Show(const PosesFound& event) {
   Print("poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
         report.registered, report.photos, report.points, report.mean_reprojection_error,
         FormatDuration(seconds));
+}
+
+void TrainingDisplay::Show(const ResolutionChosen& event) {
+  Print("{} x {} photographs are trained on at {} x {} pixels; --downscale 1 trains on all\n",
+        event.width, event.height, event.width / event.downscale, event.height / event.downscale);
 }
 
 void TrainingDisplay::Show(const InspectionProgress& event) {
@@ -159,6 +181,9 @@ void TrainingDisplay::Show(const TrainingEnded& event) {
   if (last && next) {
     fmt::print("the last {} dB cost {}; {} dB more would take about {} more\n", kGain,
                FormatSeconds(*last), kGain, FormatSeconds(*next));
+  }
+  if (event.picture) {
+    fmt::print("{}: a photograph, its rendering, the error\n", event.picture->string());
   }
   Print("{}\nnext: nerf eval {}\n", run, run);
 }

@@ -7,6 +7,9 @@
 
 namespace nerf {
 
+// What was taken out of a film, in words.
+std::string DescribeFrames(const sfm::FilmFrames& frames, const std::filesystem::path& folder);
+
 // A pipeline listener that prints to the terminal: results to standard output, warnings and
 // progress to standard error.
 class TrainingDisplay {
@@ -15,7 +18,10 @@ class TrainingDisplay {
 
  private:
   void Show(const Warning& event);
+  void Show(const WaitEstimated& event);
+  void Show(const FilmRead& event);
   void Show(const PosesFound& event);
+  void Show(const ResolutionChosen& event);
   void Show(const InspectionProgress& event);
   void Show(const CaptureInspected& event);
   void Show(const DataPlanned& event);

@@ -61,6 +61,20 @@ std::string KeyFromPointer(std::string pointer) {
   return pointer.substr(1);
 }
 
+// What the user wrote: the assignments, and the JSON files from `preset` up to a built-in preset.
+std::vector<json> UserChanges(const std::string& preset,
+                              const std::vector<std::string>& assignments) {
+  std::vector<json> changes;
+  for (const std::string& assignment : assignments) changes.push_back(ParseAssignment(assignment));
+  for (std::string file = preset; !BuiltInPresets().contains(file);) {
+    changes.push_back(ParseConfig(ReadWholeFile(file), "config " + file));
+    if (!changes.back().contains(kParentKey)) break;
+    file = changes.back()[kParentKey];
+  }
+  std::erase_if(changes, [](const json& change) { return !change.is_object(); });
+  return changes;
+}
+
 Config Checked(const json& document, const std::string& where) {
   Config config;
   try {
@@ -114,25 +128,23 @@ Config WithEffect(Config config, const EffectDescriptor& effect, bool on) {
 std::set<std::string> NamedEffects(const std::string& preset,
                                    const std::vector<std::string>& assignments) {
   std::set<std::string> named;
-  const auto add_names_in = [&](const json& change) {
-    if (!change.is_object()) return;
+  for (const json& change : UserChanges(preset, assignments)) {
     if (change.contains(json::json_pointer("/march/near_distance"))) named.insert(kNearPlane);
     const json effects = change.value("effects", json());
-    if (!effects.is_object()) return;
+    if (!effects.is_object()) continue;
     for (const auto& [name, block] : effects.items()) {
       const EffectDescriptor* const effect = FindEffect(name);
       named.insert(effect != nullptr ? effect->name : name);
     }
-  };
-  for (const std::string& assignment : assignments) add_names_in(ParseAssignment(assignment));
-  // Built-in presets do not decide effects.
-  for (std::string file = preset; !BuiltInPresets().contains(file);) {
-    const json change = ParseConfig(ReadWholeFile(file), "config " + file);
-    add_names_in(change);
-    if (!change.contains(kParentKey)) break;
-    file = change[kParentKey];
   }
   return named;
+}
+
+bool GivesKey(const std::string& preset, const std::vector<std::string>& assignments,
+              const std::string& pointer) {
+  const json::json_pointer key(pointer);
+  return std::ranges::any_of(UserChanges(preset, assignments),
+                             [&](const json& change) { return change.contains(key); });
 }
 
 Config ConfigFromJson(const json& document, const std::string& where) {

@@ -67,6 +67,11 @@ Config LoadConfig(const std::string& preset, const std::vector<std::string>& ass
 std::set<std::string> NamedEffects(const std::string& preset,
                                    const std::vector<std::string>& assignments);
 
+// Whether the user has given a key, in the same way. Built-in presets do not count.
+//   pointer  "/block/key"
+bool GivesKey(const std::string& preset, const std::vector<std::string>& assignments,
+              const std::string& pointer);
+
 // The configuration with one effect turned on or off. An effect that is already on keeps its
 // options.
 Config WithEffect(Config config, const EffectDescriptor& effect, bool on);

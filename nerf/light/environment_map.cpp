@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -39,12 +40,38 @@ void CheckRadiance(const Image& image, const std::string& name) {
   }
 }
 
-void ClampNegative(Image& image, const std::string& name) {
-  const auto negative = std::ranges::count_if(image.pixels, [](float v) { return v < 0; });
-  if (negative == 0) return;
-  spdlog::warn("{}: {} values are slightly negative, as after resampling; they are taken as 0",
-               name, negative);
-  for (float& value : image.pixels) value = std::max(value, 0.0f);
+// The darkest of the values around (x, y) that are not negative; 0 if there are none.
+float DarkestNeighbour(const Image& image, int x, int y, int c) {
+  float darkest = std::numeric_limits<float>::infinity();
+  for (int v = std::max(0, y - 1); v <= std::min(image.height - 1, y + 1); ++v) {
+    for (const int u : {(x + image.width - 1) % image.width, x, (x + 1) % image.width}) {
+      const float value = image.At(u, v)[c];
+      if (value >= 0) darkest = std::min(darkest, value);
+    }
+  }
+  return std::isfinite(darkest) ? darkest : 0;
+}
+
+// Slightly negative values are the overshoot of a resampling filter, on the dark side of an edge:
+// the dark side is what should be there.
+void ReplaceNegative(Image& image, const std::string& name) {
+  const Image before = image;
+  int replaced = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        if (before.At(x, y)[c] >= 0) continue;
+        image.At(x, y)[c] = DarkestNeighbour(before, x, y, c);
+        ++replaced;
+      }
+    }
+  }
+  if (replaced == 0) return;
+  spdlog::warn(
+      "{}: {} values are slightly negative, as after resampling; they are replaced by the darkest "
+      "of "
+      "their neighbours",
+      name, replaced);
 }
 
 // The bin of a piecewise constant distribution that u selects, and the position in it, in [0,1].
@@ -80,7 +107,7 @@ EnvironmentMap EnvironmentMap::Uniform(const Color& radiance) {
 EnvironmentMap::EnvironmentMap(Image radiance, const std::string& name)
     : radiance_(std::move(radiance)) {
   CheckRadiance(radiance_, name);
-  ClampNegative(radiance_, name);
+  ReplaceNegative(radiance_, name);
   const auto stride = static_cast<std::size_t>(width()) + 1;
   rows_.assign(static_cast<std::size_t>(height()) + 1, 0);
   columns_.assign(static_cast<std::size_t>(height()) * stride, 0);

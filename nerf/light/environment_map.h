@@ -19,7 +19,8 @@ class EnvironmentMap {
  public:
   // Reads an HDR or EXR file, or any other image, converted to linear light. Throws InputError
   // naming the file if the image is not twice as wide as high, or a value is not finite or
-  // negative. Slightly negative values, as resampling leaves, are taken as 0 with a warning.
+  // negative. Slightly negative values, as resampling leaves, are replaced by the darkest of
+  // their neighbours, with a warning.
   static EnvironmentMap Read(const std::filesystem::path& file);
 
   // The same radiance from all directions.

@@ -33,6 +33,10 @@ double IgnoreMasked(const std::vector<std::uint32_t>& whole, const Image& truth,
 void RenderCost::Add(const RenderedView& view) {
   ++views;
   pixels += static_cast<std::int64_t>(view.rgb.width) * view.rgb.height;
+  if (std::int64_t{view.rgb.width} * view.rgb.height > std::int64_t{width} * height) {
+    width = view.rgb.width;
+    height = view.rgb.height;
+  }
   samples += view.samples;
   seconds.Add(view.seconds);
 }

@@ -29,6 +29,7 @@ struct ViewScore {
 // The cost of all views together.
 struct RenderCost {
   std::int64_t views = 0, pixels = 0, samples = 0;
+  int width = 0, height = 0;  // of the largest view, pixels
   StageSeconds seconds;
   double reading = 0;  // seconds for reading photographs
 

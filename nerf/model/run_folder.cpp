@@ -13,7 +13,9 @@ fs::path CheckpointPath(const fs::path& run) { return run / "checkpoint.nerf"; }
 fs::path PosesPath(const fs::path& run) { return run / "transforms.json"; }
 fs::path RefinedPosesPath(const fs::path& run) { return run / "refined_transforms.json"; }
 fs::path ConfigPath(const fs::path& run) { return run / "config.json"; }
+fs::path PicturePath(const fs::path& run) { return run / "picture.png"; }
 fs::path MetricsPath(const fs::path& run) { return run / "metrics.jsonl"; }
+fs::path FramesPath(const fs::path& run) { return run / "frames"; }
 fs::path ColmapPath(const fs::path& run) { return run / "colmap"; }
 fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
 

@@ -13,14 +13,18 @@ namespace nerf {
 //   transforms.json          poses in the input's frame and units, with the splits
 //   config.json              the configuration, every key
 //   metrics.jsonl            one line per validation
+//   frames/                  the frames of a film
 //   colmap/                  COLMAP's files, if poses were found from photographs
+//   picture.png              a photograph and its rendering, at the end of training
 //   refined_transforms.json  refined poses, with pose_refinement
 //   sparse/                  the input's sparse points, a COLMAP model, with depth_supervision
 std::filesystem::path CheckpointPath(const std::filesystem::path& run);
 std::filesystem::path PosesPath(const std::filesystem::path& run);
 std::filesystem::path RefinedPosesPath(const std::filesystem::path& run);
 std::filesystem::path ConfigPath(const std::filesystem::path& run);
+std::filesystem::path PicturePath(const std::filesystem::path& run);
 std::filesystem::path MetricsPath(const std::filesystem::path& run);
+std::filesystem::path FramesPath(const std::filesystem::path& run);
 std::filesystem::path ColmapPath(const std::filesystem::path& run);
 std::filesystem::path SparsePath(const std::filesystem::path& run);
 

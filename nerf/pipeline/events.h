@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <variant>
@@ -17,6 +18,7 @@
 #include "nerf/scene/dataset.h"
 #include "nerf/train/trainer.h"
 #include "sfm/colmap_runner.h"
+#include "sfm/film.h"
 
 namespace nerf {
 
@@ -26,6 +28,16 @@ namespace nerf {
 struct Warning {
   std::string text;
 };
+// Frames were taken out of a film.
+struct FilmRead {
+  std::filesystem::path film, folder;
+  sfm::FilmFrames frames;
+};
+// How long everything will take, roughly, before COLMAP begins.
+struct WaitEstimated {
+  int photographs = 0;
+  double pose_seconds = 0, training_seconds = 0;
+};
 // COLMAP found the poses of plain photographs.
 struct PosesFound {
   sfm::ColmapReport report;
@@ -33,6 +45,11 @@ struct PosesFound {
 // Reported by worker threads, one at a time.
 struct InspectionProgress {
   std::int64_t done = 0, photographs = 0;
+};
+// The resolution that was chosen for photographs, since the user did not.
+struct ResolutionChosen {
+  int downscale = 1;
+  int width = 0, height = 0;  // of the largest photograph, before
 };
 // The verdicts of all effects, before trials.
 struct CaptureInspected {
@@ -74,12 +91,13 @@ struct TrainingEnded {
   TrainSummary summary;
   TrainOptions options;
   std::filesystem::path run;
+  std::optional<std::filesystem::path> picture;  // of what it reached
 };
 
 using PipelineEvent =
-    std::variant<Warning, PosesFound, InspectionProgress, CaptureInspected, DataPlanned,
-                 VerdictReached, EffectsTried, EffectsUndecided, BudgetPlanned, TrainingBegan,
-                 TrainerEvent, PosesRefined, TrainingEnded>;
+    std::variant<Warning, WaitEstimated, FilmRead, PosesFound, ResolutionChosen, InspectionProgress,
+                 CaptureInspected, DataPlanned, VerdictReached, EffectsTried, EffectsUndecided,
+                 BudgetPlanned, TrainingBegan, TrainerEvent, PosesRefined, TrainingEnded>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // A listener that ignores all events.

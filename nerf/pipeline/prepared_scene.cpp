@@ -16,6 +16,7 @@
 #include "nerf/scene/splits.h"
 #include "sfm/colmap_model.h"
 #include "sfm/colmap_text_writer.h"
+#include "sfm/film.h"
 #include "sfm/masks.h"
 #include "sfm/pose_input.h"
 
@@ -35,20 +36,25 @@ std::string SomeOf(const std::vector<std::string>& names) {
   return text;
 }
 
-// The folder to which an image's name is relative.
-fs::path ImageFolder(const PosedImage& image) {
-  fs::path folder = image.path;
-  for ([[maybe_unused]] const fs::path& part : fs::path(image.name)) folder = folder.parent_path();
-  return folder;
+// Takes frames out of a film, into a folder.
+void ReadFilm(const fs::path& film, const fs::path& frames, const DataOptions& options,
+              const PipelineListener& listener) {
+  MakeOutputFolder(frames.parent_path());
+  listener(FilmRead{film, frames, sfm::ExtractFrames(film, frames, options.film_frames)});
 }
 
-PosedImages FindPoses(const fs::path& input, const fs::path& folder,
+PosedImages FindPoses(const fs::path& input, const fs::path& folder, const DataOptions& options,
                       const PipelineListener& listener) {
-  const sfm::InputLocation location = sfm::FindInput(input);
+  sfm::InputLocation location = sfm::FindInput(input);
   PosedImages posed;
+  sfm::ColmapOptions colmap;
+  colmap.threads = NumThreads();
+  if (location.kind == sfm::InputKind::kFilm) {
+    ReadFilm(location.images, FramesPath(folder), options, listener);
+    location = {sfm::InputKind::kPhotos, {}, FramesPath(folder)};
+    colmap.matcher = "sequential";
+  }
   if (location.kind == sfm::InputKind::kPhotos) {
-    sfm::ColmapOptions colmap;
-    colmap.threads = NumThreads();
     PosesFound found;
     posed = sfm::PosesFromPhotos(location.images, ColmapPath(folder), colmap, &found.report);
     if (!found.report.skipped.empty()) {
@@ -83,7 +89,9 @@ std::vector<double> PreparedScene::StopsOf(const std::vector<View>& train) const
 PreparedScene PrepareScene(const fs::path& input, const fs::path& folder,
                            const DataOptions& options, const PipelineListener& listener) {
   PreparedScene scene;
-  scene.posed = FindPoses(input, folder, listener);
+  const sfm::InputKind kind = sfm::FindInput(input).kind;
+  scene.from_photographs = kind == sfm::InputKind::kPhotos || kind == sfm::InputKind::kFilm;
+  scene.posed = FindPoses(input, folder, options, listener);
   ReportMissing(scene.posed, listener);
   AssignSplits(scene.posed, options);
   scene.normalized_from_world = NormalizeScene(scene.posed);
@@ -141,8 +149,7 @@ void SaveSparsePoints(const PosedImages& posed, const Config& config, const fs::
 
 void AddSavedSparsePoints(const PosedImages& posed, const SceneNormalization& normalized_from_world,
                           const fs::path& run, Dataset& data) {
-  const PosedImages sparse =
-      sfm::ReadColmapModel(SparsePath(run), ImageFolder(posed.images.front()));
+  const PosedImages sparse = sfm::ReadColmapModel(SparsePath(run), RootOf(posed.images.front()));
   AddSparseDepths(sparse, normalized_from_world, data);
 }
 

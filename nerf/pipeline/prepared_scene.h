@@ -15,7 +15,8 @@ namespace nerf {
 // A capture with everything that is known before a model is made: poses, splits, normalized frame,
 // and verdicts on effects.
 struct PreparedScene {
-  PosedImages posed;  // in the units and the frame of the input
+  PosedImages posed;              // in the units and the frame of the input
+  bool from_photographs = false;  // poses were found for plain photographs or a film
   SceneNormalization normalized_from_world;
   Inspection inspection;  // empty without InspectScene
   double inspection_seconds = 0;

@@ -11,16 +11,24 @@
 #include "nerf/base/progress.h"
 #include "nerf/base/temporary_file.h"
 #include "nerf/effects/depth_supervision.h"
+#include "nerf/image/image_files.h"
 #include "nerf/model/checkpoint.h"
 #include "nerf/model/refined_poses.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/budget_plan.h"
+#include "nerf/pipeline/training_picture.h"
+#include "nerf/pipeline/training_resolution.h"
+#include "sfm/colmap_estimate.h"
+#include "sfm/photo_folder.h"
 #include "sfm/pose_input.h"
 #include "sfm/transforms_json.h"
 
 namespace nerf {
 
 namespace fs = std::filesystem;
+
+// For the picture at the end, beside what the trainer itself reserves.
+constexpr double kPictureSeconds = 0.4;
 
 TrainingSession::TrainingSession(TrainingRequest request, const Stopwatch& watch,
                                  PipelineListener listener)
@@ -69,7 +77,8 @@ void TrainingSession::RequireValidation() const {
 // Seconds of the time budget that are spent. The time for finding poses cannot be bounded, so
 // training gets at least half of the budget.
 double TrainingSession::SpentSeconds() const {
-  const double budget = config_.train.time_budget, spent = watch_.Seconds();
+  const double budget = config_.train.time_budget,
+               spent = watch_.Seconds() + (budget > 0 ? kPictureSeconds : 0);
   if (budget == 0 || spent <= budget / 2) return spent;
   listener_(Warning{
       fmt::format("{} of the time budget were spent before training; training still gets {}",
@@ -77,12 +86,48 @@ double TrainingSession::SpentSeconds() const {
   return budget / 2;
 }
 
+double TrainingSession::TrainingSeconds() const {
+  const TrainOptions& train = config_.train;
+  return train.time_budget > 0 ? train.time_budget : ApproximateSeconds(train.steps);
+}
+
+// For photographs whose poses are not found yet.
+void TrainingSession::EstimateWait() const {
+  const sfm::InputLocation input = sfm::FindInput(request_.input);
+  if (input.kind != sfm::InputKind::kPhotos || fs::exists(ColmapPath(request_.run))) return;
+  const std::vector<sfm::PhotoFile> files = sfm::ListPhotos(input.images);
+  const auto size = ReadImageSize(files.front().path);
+  if (!size) return;
+  const auto photographs = static_cast<int>(files.size());
+  listener_(WaitEstimated{
+      photographs,
+      sfm::EstimatePoseSeconds(photographs, std::max(size->width, size->height), {}, NumThreads()),
+      TrainingSeconds()});
+}
+
+// Poses that are given are for pixels of a size that somebody chose; photographs have that of a
+// camera.
+void TrainingSession::ChooseResolution() {
+  if (!scene_.from_photographs ||
+      GivesKey(request_.preset, request_.assignments, "/data/downscale")) {
+    return;
+  }
+  const auto size = [](const Camera& camera) { return std::max(camera.width, camera.height); };
+  const Camera& largest = *std::ranges::max_element(scene_.posed.cameras, {}, size);
+  const int downscale = DownscaleFor(size(largest), TrainingSeconds());
+  if (downscale == 1) return;
+  request_.assignments.push_back(fmt::format("data.downscale={}", downscale));
+  config_ = ConfigWithDecisions(request_.preset);
+  listener_(ResolutionChosen{downscale, largest.width, largest.height});
+}
+
 void TrainingSession::PrepareCapture() {
   config_ = ConfigWithDecisions(request_.preset);
   CheckRunFolder();
-  sfm::FindInput(request_.input);  // fails before a run folder is created
+  EstimateWait();  // fails before a run folder is created
   scene_ = PrepareScene(request_.input, request_.run, config_.data, listener_);
   RequireValidation();
+  ChooseResolution();
   if (request_.effects.inspect) {
     const auto requested = NamedEffects(request_.preset, request_.assignments);
     InspectScene(config_, requested, scene_, listener_);
@@ -144,7 +189,11 @@ TrainSummary TrainingSession::Train(const std::atomic<bool>& stop) {
   const TrainSummary summary =
       trainer_->Run(stop, [this](const TrainerEvent& event) { listener_(event); });
   ReportRefinedPoses();
-  listener_(TrainingEnded{summary, config_.train, request_.run});
+  std::optional<fs::path> picture;
+  if (summary.finished) {
+    picture = WriteTrainingPicture(trainer_->GetModel(), posed_, request_.run);
+  }
+  listener_(TrainingEnded{summary, config_.train, request_.run, picture});
   return summary;
 }
 

@@ -53,6 +53,9 @@ class TrainingSession {
   void PlanTimeBudget();
   TrainSummary Train(const std::atomic<bool>& stop);
 
+  double TrainingSeconds() const;  // roughly
+  void EstimateWait() const;
+  void ChooseResolution();
   Config ConfigWithDecisions(const std::string& preset) const;
   void WriteConfig() const;
   void CheckRunFolder() const;

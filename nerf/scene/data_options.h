@@ -7,6 +7,7 @@ namespace nerf {
 // Which photographs are trained on, and how they are read.
 struct DataOptions {
   int downscale = 1;
+  int film_frames = 0;
   int test_every = 8;
   int validation_images = 1;
   int memory_mb = 1024;
@@ -15,6 +16,8 @@ struct DataOptions {
   static void Options(Self& o, Visitor&& option) {
     option("downscale", o.downscale, "", AtLeast(1),
            "photographs are area-averaged by this factor");
+    option("film_frames", o.film_frames, "", ZeroOr(Between(2, 10000)),
+           "how many frames of a film are used; 0: three a second, 40 to 150");
     option("test_every", o.test_every, "", ZeroOr(AtLeast(2)),
            "hold out images 0, 8, 16, ... by name; 0: none");
     option("validation_images", o.validation_images, "", AtLeast(0),

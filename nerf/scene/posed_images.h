@@ -54,6 +54,16 @@ struct PosedImage {
   Split split = Split::kUnspecified;
 };
 
+// The folder to which the name of an image is relative: "photos" for photos/left/1.jpg of the name
+// left/1.jpg.
+inline std::filesystem::path RootOf(const PosedImage& image) {
+  std::filesystem::path root = image.path;
+  for ([[maybe_unused]] const auto& part : std::filesystem::path(image.name)) {
+    root = root.parent_path();
+  }
+  return root;
+}
+
 // An observation of a sparse point in an image.
 struct TrackElement {
   int image = 0;  // index into PosedImages::images

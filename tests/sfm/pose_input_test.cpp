@@ -118,6 +118,18 @@ TEST_F(PoseInput, ReducedPhotographsOfAModelAreFound) {
   ExpectFound("p", InputKind::kColmap, "p/sparse/0", "p/images");
 }
 
+TEST_F(PoseInput, AFilmIsAnInput) {
+  scratch_.Write("p/clip.MOV", "x");
+  ExpectFound("p/clip.MOV", InputKind::kFilm, "", "p/clip.MOV");
+  ExpectFound("p", InputKind::kFilm, "", "p/clip.MOV");
+  scratch_.Write("p/clip2.mp4", "x");
+  EXPECT_THAT(FindError("p"), HasSubstr("contains 2 films; give one of them"));
+  WritePhotos("p");
+  ExpectFound("p", InputKind::kPhotos, "", "p");
+  scratch_.Write("photos.zip", "x");
+  EXPECT_THAT(FindError("photos.zip"), HasSubstr("give a folder of photographs, a film"));
+}
+
 TEST_F(PoseInput, PhotographsMayBeInSubFolders) {
   scratch_.WriteImage("p/left/1.jpg", 6, 5);
   scratch_.WriteImage("p/right/1.jpg", 6, 5);

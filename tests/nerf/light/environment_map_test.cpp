@@ -57,14 +57,15 @@ TEST(EnvironmentMap, HasTheDocumentedOrientation) {
   EXPECT_TRUE(map.Radiance(-Vector3d::UnitY()).isZero());
 }
 
-TEST(EnvironmentMap, WhatResamplingOvershootsIsTakenAsBlack) {
+TEST(EnvironmentMap, WhatResamplingOvershootsIsTheDarkSideOfItsEdge) {
   Image image = Black(32);
   for (float& value : image.pixels) value = 0.5f;
   image.pixels[3] = -1e-5f;
   image.pixels[90] = -0.3f;
+  Light(image, 31, 0, Color(9, 9, 9));  // the bright side
   const EnvironmentMap map(image, "resampled");
-  EXPECT_EQ(map.At(1, 0).x(), 0);
-  EXPECT_EQ(map.At(30, 0).x(), 0);
+  EXPECT_EQ(map.At(1, 0).x(), 0.5);
+  EXPECT_EQ(map.At(30, 0).x(), 0.5);
   // More than a thousandth of the light is no rounding.
   for (int i = 0; i < 40; ++i) image.pixels[3 * i] = -0.3f;
   EXPECT_THAT(test::InputErrorOf([&] { EnvironmentMap(image, "wrong.exr"); }),

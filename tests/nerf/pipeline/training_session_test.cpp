@@ -8,7 +8,9 @@
 #include "nerf/base/atomic_file.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/synthetic/sample_folder.h"
+#include "tests/support/fake_colmap.h"
 #include "tests/support/input_error_of.h"
+#include "tests/support/photo_files.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_training.h"
 
@@ -113,6 +115,52 @@ TEST_F(TrainingSessionTest, KeepsWhatTheUserDecided) {
   TrainingSession again(request_, Stopwatch(), IgnoreEvents);
   EXPECT_THAT(test::InputErrorOf([&] { again.Run(test::never_stop); }),
               testing::HasSubstr("already contains a run"));
+}
+
+// Photographs without poses, for which a program stands in that makes some up.
+TEST_F(TrainingSessionTest, ChoosesTheResolutionOfPhotographs) {
+  const test::FakeColmap colmap;
+  const test::ScratchFolder photos;
+  for (int i = 0; i < 6; ++i) {
+    test::WritePhoto(photos.path() / fmt::format("p{}.png", i), 1300, 40);
+  }
+  colmap.Set("size", "1300 40");
+  colmap.Set("models", "0 6\n");
+  request_.input = photos.path();
+  std::optional<ResolutionChosen> chosen;
+  std::optional<WaitEstimated> wait;
+  const PipelineListener listener = [&](const PipelineEvent& event) {
+    if (const auto* e = std::get_if<ResolutionChosen>(&event)) chosen = *e;
+    if (const auto* e = std::get_if<WaitEstimated>(&event)) wait = *e;
+  };
+  TrainingSession session(request_, Stopwatch(), listener);
+  session.Run(test::never_stop);
+  ASSERT_TRUE(wait);
+  EXPECT_EQ(wait->photographs, 6);
+  ASSERT_TRUE(chosen);
+  EXPECT_EQ(chosen->width, 1300);
+  EXPECT_EQ(chosen->downscale, 2);
+  EXPECT_EQ(session.GetConfig().data.downscale, 2);
+  EXPECT_EQ(OpenRun(request_.run).model->GetModel().config.data.downscale, 2);
+  EXPECT_TRUE(std::filesystem::exists(PicturePath(request_.run)));
+  // What the user says stands, also where it is all pixels.
+  chosen.reset();
+  request_.run = folder_.path() / "another";
+  request_.assignments.push_back("data.downscale=1");
+  TrainingSession whole(request_, Stopwatch(), listener);
+  whole.Run(test::never_stop);
+  EXPECT_FALSE(chosen);
+  EXPECT_EQ(whole.GetConfig().data.downscale, 1);
+}
+
+TEST_F(TrainingSessionTest, KeepsTheSizeOfCapturesWithPoses) {
+  request_.assignments.push_back("train.time_budget=0");
+  bool chosen = false;
+  TrainingSession session(request_, Stopwatch(), [&](const PipelineEvent& event) {
+    chosen = chosen || std::holds_alternative<ResolutionChosen>(event);
+  });
+  session.Run(test::never_stop);
+  EXPECT_FALSE(chosen);
 }
 
 }  // namespace

@@ -1,0 +1,15 @@
+#pragma once
+
+namespace nerf {
+
+// The factor by which photographs are reduced where the user does not say it: to the resolution
+// that a training of this length can learn.
+//   longest_side  of the photographs, pixels
+//   seconds       of training
+//   returns       1 or more
+int DownscaleFor(int longest_side, double seconds);
+
+// The approximate length of a training without a time budget.
+double ApproximateSeconds(int steps);
+
+}  // namespace nerf

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+namespace nerf::sfm {
+
+// Whether a file has the extension of a film: mp4, mov, mkv, webm, ...
+bool HasFilmExtension(const std::filesystem::path& file);
+
+struct FilmFrames {
+  int frames = 0;        // written
+  int blurred = 0;       // parts of the film that were passed over because all of them is blurred
+  double seconds = 0;    // length of the film
+  bool existed = false;  // written by an earlier call
+};
+
+// Takes sharp frames at even distances out of a film (ChooseFrames), upright as the film is shown,
+// and writes them to a folder as frame_00001.jpg, ... with film.json, by which a second call with
+// the same film and number finds them done. An earlier folder of frames is replaced.
+//   count  of frames; 0: DefaultFrameCount
+// Needs the programs ffmpeg and ffprobe. Throws InputError naming the film if they are missing or
+// cannot read it, or if it has fewer than two frames; or the folder, if it has other files.
+FilmFrames ExtractFrames(const std::filesystem::path& film, const std::filesystem::path& folder,
+                         int count);
+
+}  // namespace nerf::sfm
