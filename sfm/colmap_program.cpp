@@ -19,10 +19,12 @@ namespace {
 
 namespace bp = boost::process;
 
+//   temporary  folder for temporary files and the logs that COLMAP writes by itself; empty: as usual
 bp::child Start(const std::filesystem::path& executable, std::vector<std::string> arguments,
-                bp::ipstream& output) {
+                bp::ipstream& output, const std::filesystem::path& temporary = {}) {
   bp::environment environment = boost::this_process::environment();
   environment["QT_QPA_PLATFORM"] = "offscreen";
+  if (!temporary.empty()) environment["TMPDIR"] = temporary.string();
   environment["TERM"] = "dumb";  // COLMAP 4 colours its messages even in a pipe
   try {
     return bp::child(bp::exe = executable.string(), bp::args = std::move(arguments), environment,
@@ -128,7 +130,7 @@ ColmapProgram::Outcome ColmapProgram::Run(
   std::vector<std::string> all = {command};
   all.insert(all.end(), arguments.begin(), arguments.end());
   bp::ipstream output;
-  bp::child child = Start(executable_, std::move(all), output);
+  bp::child child = Start(executable_, std::move(all), output, log_file.parent_path());
   FailureLine failure;
   try {
     for (std::string line; std::getline(output, line);) {

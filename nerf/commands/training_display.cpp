@@ -184,8 +184,10 @@ void TrainingDisplay::Show(const TrainingEnded& event) {
   }
   if (event.picture) {
     fmt::print("{}: a photograph, its rendering, the error\n", event.picture->string());
+  } else {
+    fmt::print("{}\n", run);
   }
-  Print("{}\nnext: nerf eval {}\n", run, run);
+  Print("next: nerf eval {}\n", run);
 }
 
 }  // namespace nerf
