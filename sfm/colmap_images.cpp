@@ -100,7 +100,7 @@ void LinkOrCopy(const Photo& photo, const fs::path& target, PhotoLinks links) {
   if (links == PhotoLinks::kSymbolic) {
     fs::create_symlink(photo.path, target, error);
   } else {
-    fs::create_hard_link(photo.path, target, error);
+    fs::create_hard_link(fs::canonical(photo.path, error), target, error);
   }
   if (error) fs::copy_file(photo.path, target, error);
   if (error) throw InputError("{}: cannot be written: {}", target.string(), error.message());

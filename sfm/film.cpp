@@ -68,6 +68,20 @@ struct Film {
   double seconds = 0, frames_per_second = 0;
 };
 
+// The length of a film whose header does not have it, as where it was recorded as a stream.
+double SecondsOfPackets(const fs::path& film) {
+  double last = 0;
+  Run("ffprobe", film,
+      {"-v", "error", "-select_streams", "v:0", "-show_entries", "packet=pts_time", "-of",
+       "csv=p=0", "file:" + film.string()},
+      [&](std::istream& output) {
+        for (std::string line; std::getline(output, line);) {
+          last = std::max(last, std::strtod(line.c_str(), nullptr));
+        }
+      });
+  return last;
+}
+
 Film Probe(const fs::path& film) {
   std::string text;
   Run("ffprobe", film,
@@ -93,6 +107,7 @@ Film Probe(const fs::path& film) {
   const std::size_t slash = rate.find('/');
   const double divisor = slash == std::string::npos ? 1 : std::strtod(&rate[slash + 1], nullptr);
   if (divisor > 0) probed.frames_per_second = std::strtod(rate.c_str(), nullptr) / divisor;
+  if (!(probed.seconds > 0)) probed.seconds = SecondsOfPackets(film);
   if (!(probed.seconds > 0)) ThrowUnreadable(film, "its length is unknown");
   return probed;
 }
@@ -140,22 +155,37 @@ json RecordOf(const fs::path& film, int count) {
           {"requested", count}};
 }
 
-// The frames of an earlier call; those of another film are removed.
+// Whether a folder has nothing but frames: other files, such as masks of them, must not be lost.
+bool HasOnlyFrames(const fs::path& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name != kRecord && !(name.starts_with("frame_") && name.ends_with(".jpg"))) return false;
+  }
+  return true;
+}
+
+// The frames of an earlier call. Throws InputError if the folder has something that must not be
+// replaced.
 std::optional<FilmFrames> EarlierFrames(const fs::path& folder, const json& record) {
   std::error_code error;
   if (!fs::exists(folder, error) || fs::is_empty(folder, error)) return std::nullopt;
-  if (!fs::exists(folder / kRecord)) {
-    throw InputError("{}: contains files that are no frames of a film; choose another folder",
-                     folder.string());
+  json found;
+  if (fs::exists(folder / kRecord)) {
+    found = json::parse(ReadWholeFile(folder / kRecord), nullptr, false);
   }
-  json found = json::parse(ReadWholeFile(folder / kRecord), nullptr, false);
   bool same = found.is_object() && found.contains("frames");
   for (const auto& [key, value] : record.items()) same = same && found.value(key, json()) == value;
   if (same) {
     return FilmFrames{found.value("frames", 0), found.value("blurred", 0),
                       found.value("seconds", 0.0), true};
   }
-  RemoveAll(folder);
+  if (!fs::exists(folder / kRecord) || !HasOnlyFrames(folder)) {
+    throw InputError(
+        "{}: contains files that are no frames of this film; remove the folder, or choose another "
+        "output folder",
+        folder.string());
+  }
   return std::nullopt;
 }
 

@@ -16,7 +16,7 @@ void FindMask(PosedImage& image) {
        {folder / "masks", folder.parent_path() / "masks", root / "masks" / below_root,
         root.parent_path() / "masks" / below_root}) {
     std::error_code ignored;
-    if (!fs::is_directory(masks, ignored)) continue;
+    if (!fs::is_directory(masks, ignored) || fs::equivalent(masks, folder, ignored)) continue;
     for (const fs::path& file : {masks / name, masks / name.stem()}) {
       if (const auto mask = FindImageFile(file)) {
         image.mask = *mask;

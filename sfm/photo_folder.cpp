@@ -1,9 +1,13 @@
 #include "sfm/photo_folder.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "nerf/base/file_bytes.h"
 #include "nerf/base/input_error.h"
@@ -30,9 +34,12 @@ bool IsCroppedAfterExif(const OIIO::ImageSpec& spec) {
   const ImageSize exif = {spec.get_int_attribute("Exif:PixelXDimension"),
                           spec.get_int_attribute("Exif:PixelYDimension")};
   if (exif.width < 1 || exif.height < 1) return false;
-  const ImageSize stored = {spec.full_width, spec.full_height};
-  // Programs that turn a picture upright often leave the sizes as they were.
-  return !IsScaledCopy(stored, exif) && !IsScaledCopy(stored, {exif.height, exif.width});
+  // Programs that turn a picture upright often leave the sizes as they were, and others cut off the
+  // last blocks of a JPEG.
+  constexpr double kTrimmed = 0.02;
+  const double stored = std::log(static_cast<double>(spec.full_width) / spec.full_height);
+  const double before = std::log(static_cast<double>(exif.width) / exif.height);
+  return std::min(std::fabs(stored - before), std::fabs(stored + before)) > kTrimmed;
 }
 
 // Reads all rows, a few at a time, so that even 100 megapixels take little memory.
@@ -91,25 +98,38 @@ bool HoldsPhotos(const fs::path& folder) {
   static const std::set<std::string> kOthers = {"masks",  "mask",   "depth",
                                                 "depths", "colmap", "sparse"};
   const std::string name = Lowercase(folder.filename().string());
-  // A run of `nerf train`, or poses.
-  const bool is_result = Exists(folder / "config.json") || Exists(folder / "steps.json");
+  const bool is_result = std::ranges::any_of(
+      std::array{"config.json", "steps.json", "film.json", "eval.json", "normals.exr", "relit.exr"},
+      [&](const char* file) { return Exists(folder / file); });
   return !name.starts_with('.') && !kOthers.contains(name) && !is_result;
 }
 
-void AddPhotos(const fs::path& folder, const std::string& prefix, std::vector<PhotoFile>& files) {
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::error_code ignored;  // a dangling link is no regular file
-    const fs::path& path = it->path();
-    const std::string name = prefix + path.filename().string();
-    if (it->is_directory(ignored) && !it->is_symlink(ignored)) {
-      if (HoldsPhotos(path)) AddPhotos(path, name + "/", files);
-    } else if (HasImageExtension(path) && !path.filename().string().starts_with('.') &&
-               it->is_regular_file(ignored)) {
-      files.push_back({name, fs::absolute(path).lexically_normal()});
+// Collects the photographs of a folder and its sub-folders, each once, whatever links lead to it.
+class PhotoCollector {
+ public:
+  void Add(const fs::path& folder, const std::string& prefix = "") {
+    std::error_code error;
+    if (!visited_.insert(fs::canonical(folder, error)).second) return;
+    fs::directory_iterator it(folder, error);
+    for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
+      std::error_code ignored;  // a dangling link is no regular file
+      const fs::path& path = it->path();
+      const std::string name = prefix + path.filename().string();
+      if (it->is_directory(ignored)) {
+        if (HoldsPhotos(path)) Add(path, name + "/");
+      } else if (HasImageExtension(path) && !path.filename().string().starts_with('.') &&
+                 it->is_regular_file(ignored)) {
+        files.push_back({name, fs::absolute(path).lexically_normal()});
+      }
     }
+    if (error) throw InputError("{}: cannot be listed: {}", folder.string(), error.message());
   }
-}
+
+  std::vector<PhotoFile> files;
+
+ private:
+  std::set<fs::path> visited_;
+};
 
 // An extension of a file in the folder that is none of an image, for messages.
 std::string OtherExtension(const fs::path& folder) {
@@ -125,22 +145,15 @@ std::string OtherExtension(const fs::path& folder) {
   return {};
 }
 
-[[noreturn]] void ThrowTooFew(const std::string& where, std::size_t readable, std::size_t all,
-                              const std::vector<SkippedPhoto>& skipped) {
-  const std::string first =
-      skipped.empty() ? "" : fmt::format(" ({}: {})", skipped[0].name, skipped[0].reason);
-  throw InputError(
-      "{}: only {} of {} photographs can be read{}; copy them again; at least two are needed",
-      where, readable, all, first);
-}
-
 }  // namespace
 
 std::vector<PhotoFile> PhotosBelow(const fs::path& folder) {
-  std::vector<PhotoFile> files;
-  AddPhotos(folder, "", files);
-  std::ranges::sort(files, {}, &PhotoFile::name);
-  return files;
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return {};
+  PhotoCollector collector;
+  collector.Add(folder);
+  std::ranges::sort(collector.files, {}, &PhotoFile::name);
+  return std::move(collector.files);
 }
 
 std::vector<PhotoFile> ListPhotos(const fs::path& folder) {
@@ -199,33 +212,44 @@ PhotoFolder CheckPhotos(const std::vector<PhotoFile>& files, int threads) {
   }
   if (result.photos.size() < 2) {
     const std::string folder = files.empty() ? "" : files[0].path.parent_path().string();
-    ThrowTooFew(folder, result.photos.size(), files.size(), result.skipped);
+    const std::string first =
+        result.skipped.empty()
+            ? ""
+            : fmt::format(" ({}: {})", result.skipped[0].name, result.skipped[0].reason);
+    throw InputError(
+        "{}: only {} of {} photographs can be read{}; copy them again; at least two are needed",
+        folder, result.photos.size(), files.size(), first);
   }
   return result;
 }
 
 void SkipDuplicates(PhotoFolder& folder) {
-  std::map<std::uintmax_t, std::vector<const Photo*>> of_size;
-  std::vector<Photo> unique;
-  unique.reserve(folder.photos.size());
-  const std::size_t all = folder.photos.size() + folder.skipped.size();
-  for (Photo& photo : folder.photos) {
+  std::map<std::uintmax_t, int> count_of_size;
+  const auto size_of = [](const Photo& photo) {
     std::error_code error;
-    std::vector<const Photo*>& alike = of_size[fs::file_size(photo.path, error)];
-    const auto same = std::ranges::find_if(alike, [&](const Photo* other) {
-      return ReadFileBytes(other->path) == ReadFileBytes(photo.path);
-    });
-    if (same != alike.end()) {
-      folder.skipped.push_back({photo.name, "the same file as " + (*same)->name});
-      continue;
+    return fs::file_size(photo.path, error);
+  };
+  for (const Photo& photo : folder.photos) ++count_of_size[size_of(photo)];
+  // Files of equal size are read once; whole files are compared only if their hashes agree.
+  std::map<std::pair<std::uintmax_t, std::size_t>, Photo> first_of;
+  std::vector<Photo> unique;
+  for (Photo& photo : folder.photos) {
+    const std::uintmax_t size = size_of(photo);
+    if (count_of_size[size] > 1) {
+      const std::string bytes = ReadFileBytes(photo.path);
+      const auto [first, is_new] =
+          first_of.try_emplace({size, std::hash<std::string>()(bytes)}, photo);
+      if (!is_new && ReadFileBytes(first->second.path) == bytes) {
+        folder.skipped.push_back({photo.name, "the same file as " + first->second.name});
+        continue;
+      }
     }
     unique.push_back(std::move(photo));
-    alike.push_back(&unique.back());
   }
   folder.photos = std::move(unique);
   if (folder.photos.size() < 2) {
-    ThrowTooFew(folder.photos[0].path.parent_path().string(), folder.photos.size(), all,
-                folder.skipped);
+    throw InputError("{}: its photographs are all the same file, {}; at least two are needed",
+                     folder.photos[0].path.parent_path().string(), folder.photos[0].name);
   }
 }
 

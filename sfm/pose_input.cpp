@@ -99,6 +99,7 @@ InputLocation FindInFolder(const fs::path& input) {
   if (const auto model = FindColmapModel(input)) {
     return {InputKind::kColmap, *model, FindColmapImages(input, *model)};
   }
+  if (const auto film = FindFilm(input)) return {InputKind::kFilm, {}, *film};
   for (const fs::path& folder : {input, input / "images"}) {
     if (!ImageFilesIn(folder).empty()) return {InputKind::kPhotos, {}, folder};
   }
@@ -106,7 +107,6 @@ InputLocation FindInFolder(const fs::path& input) {
     if (!PhotosBelow(folder).empty()) return {InputKind::kPhotos, {}, folder};
   }
   const std::vector<fs::path> films = FilmsIn(input);
-  if (films.size() == 1) return {InputKind::kFilm, {}, films[0]};
   if (films.size() > 1) {
     throw InputError("{}: contains {} films; give one of them, such as {}", input.string(),
                      films.size(), films[0].string());
@@ -137,6 +137,16 @@ InputLocation FindInput(const fs::path& input) {
       "or "
       "a transforms.json",
       input.string());
+}
+
+std::optional<fs::path> FindFilm(const fs::path& input) {
+  std::error_code error;
+  if (HasFilmExtension(input) && IsFile(input)) return input;
+  const std::vector<fs::path> films =
+      fs::is_directory(input, error) ? FilmsIn(input) : std::vector<fs::path>();
+  // A picture beside a film is its thumbnail.
+  if (films.size() == 1 && PhotosBelow(input).size() < 2) return films[0];
+  return std::nullopt;
 }
 
 PosedImages ReadPosedInput(const InputLocation& location) {

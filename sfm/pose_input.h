@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "nerf/scene/posed_images.h"
 
@@ -29,6 +30,10 @@ struct InputLocation {
 //   a film, or a folder with one           a film
 // Throws InputError when the input is missing or none of these, with the list of what was tried.
 InputLocation FindInput(const std::filesystem::path& input);
+
+// The film that an input is, or that is all there is in its folder; nullopt for other inputs, valid
+// or not.
+std::optional<std::filesystem::path> FindFilm(const std::filesystem::path& input);
 
 // Reads an input with poses. Throws InputError for kPhotos and kFilm, and as ReadTransformsJson,
 // ReadColmapModel and ReadLlff do.

@@ -50,7 +50,9 @@ bool IsRunning(const std::string& process) {
 // The process that made a temporary file on this machine; empty for other files.
 std::string WriterOf(const std::string& name) {
   static const std::regex ours(R"(\..*\.tmp-(.+)-(\d{1,9})-\d+(\.[^.]*)?)");
-  static const std::regex earlier(R"(.*\.tmp(\d{1,9}))");  // of earlier versions
+  static const std::regex earlier(  // of earlier versions, which did not name the machine
+      R"((?:checkpoint\.nerf|(?:config|transforms|refined_transforms|effects|eval|study|steps)\.json))"
+      R"(\.tmp(\d{1,9}))");
   std::smatch match;
   if (std::regex_match(name, match, ours)) return match[1] == HostName() ? match[2].str() : "";
   if (std::regex_match(name, match, earlier)) return match[1];
@@ -93,7 +95,9 @@ void RemoveAbandonedFiles(const fs::path& folder) {
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string writer = WriterOf(it->path().filename().string());
     std::error_code ignored;
-    if (!writer.empty() && !IsRunning(writer)) fs::remove(it->path(), ignored);
+    if (!writer.empty() && it->is_regular_file(ignored) && !IsRunning(writer)) {
+      fs::remove(it->path(), ignored);
+    }
   }
 }
 

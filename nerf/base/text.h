@@ -13,6 +13,12 @@ inline std::string Lowercase(std::string text) {
   return text;
 }
 
+// The text without the byte order mark that Windows puts before UTF-8.
+inline std::string WithoutBom(std::string text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  return text;
+}
+
 // The first line of a text.
 inline std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 

@@ -37,6 +37,19 @@ bool IsMap(const matvar_t& variable) {
          variable.dims[1] > 0;
 }
 
+// Whether all values were read. Normals of 0 are in the background; true ones are in every channel,
+// the last of which is missing in a file that was cut.
+bool IsComplete(const matvar_t& variable) {
+  const std::size_t count = variable.dims[0] * variable.dims[1] * 3;
+  if (!IsMap(variable) || variable.data == nullptr ||
+      variable.nbytes != count * static_cast<std::size_t>(variable.data_size)) {
+    return false;
+  }
+  const auto* const bytes = static_cast<const unsigned char*>(variable.data);
+  const auto* const last_channel = bytes + 2 * (variable.nbytes / 3);
+  return std::any_of(last_channel, bytes + variable.nbytes, [](unsigned char b) { return b != 0; });
+}
+
 // Columns of rows of channels, as MATLAB stores arrays.
 template <class T>
 Image FromColumns(const matvar_t& variable) {
@@ -63,8 +76,12 @@ Image ReadMat(const fs::path& path) {
     const std::string name = info->name ? info->name : "";
     if (IsMap(*info) && (map_name.empty() || name == "Normal_gt")) map_name = name;
   }
-  const Variable variable(map_name.empty() ? nullptr : Mat_VarRead(file.get(), map_name.c_str()));
-  if (!variable || !IsMap(*variable) || variable->data == nullptr) {
+  const Variable variable(map_name.empty() ? nullptr
+                                           : Mat_VarReadInfo(file.get(), map_name.c_str()));
+  if (variable && (Mat_VarReadDataAll(file.get(), variable.get()) != 0 || !IsComplete(*variable))) {
+    throw InputError("{}: damaged or truncated", path.string());
+  }
+  if (!variable) {
     throw InputError("{}: has no variable of height x width x 3 numbers; give Normal_gt.mat",
                      path.string());
   }
@@ -112,7 +129,10 @@ NormalError CompareNormals(const Image& normal, const Image& truth, const fs::pa
     degrees.push_back(std::atan2(n.cross(t).norm(), n.dot(t)) * 180 / std::numbers::pi);
     sum += degrees.back();
   }
-  if (degrees.empty()) return {};
+  if (degrees.empty()) {
+    throw InputError("{}: has no normal where one was found; give the truth of this capture",
+                     truth_file.string());
+  }
   NormalError error;
   error.pixels = static_cast<int>(degrees.size());
   error.mean = sum / static_cast<double>(degrees.size());

@@ -17,9 +17,9 @@ Image ReadNormalTruth(const std::filesystem::path& file);
 // The angle between normals and true ones, degrees.
 struct NormalError {
   double mean = 0, median = 0;
-  int pixels = 0;  // that have both; 0: no error is known
+  int pixels = 0;  // that have both
 };
-// Throws InputError naming the file of the truth if the sizes differ.
+// Throws InputError naming the file of the truth if the sizes differ, or no pixel has both.
 NormalError CompareNormals(const Image& normal, const Image& truth,
                            const std::filesystem::path& truth_file);
 

@@ -55,16 +55,19 @@ bool NaturalLess(const fs::path& left, const fs::path& right) {
 
 // Reads the list NAME.txt of the images in the folder NAME, in order.
 std::vector<fs::path> ReadImageList(const fs::path& list, const fs::path& folder) {
-  std::istringstream text(ReadWholeFile(list));
+  std::istringstream text(WithoutBom(ReadWholeFile(list)));
   std::vector<fs::path> files;
   for (std::string line; std::getline(text, line);) {
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
     if (!HasImageExtension(line)) continue;  // the first line counts them
-    files.push_back(folder / fs::path(line).filename());
-    if (!fs::exists(files.back())) {
+    const fs::path name = fs::path(line).filename();
+    auto file = FindImageFile(folder / name);
+    if (!file) file = FindImageFile(folder / name.stem());  // raw files that were developed
+    if (!file) {
       throw InputError("{}: lists {}, which does not exist in {}", list.string(), line,
                        folder.string());
     }
+    files.push_back(*file);
   }
   return files;
 }

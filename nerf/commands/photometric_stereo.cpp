@@ -47,7 +47,13 @@ void RunPhotometricStereo(const StereoArguments& arguments) {
   UseThreads(arguments.threads);
   const auto capture = FindOlatCapture(arguments.folder, arguments.capture);
   std::optional<Image> truth;  // read first, since a mistake in it should not cost the result
-  if (!arguments.truth.empty()) truth = ReadNormalTruth(arguments.truth);
+  if (!arguments.truth.empty()) {
+    truth = ReadNormalTruth(arguments.truth);
+    if (truth->width != capture.width || truth->height != capture.height) {
+      throw InputError("--truth {}: {} x {} pixels, but the capture has {} x {}", arguments.truth,
+                       truth->width, truth->height, capture.width, capture.height);
+    }
+  }
   const std::filesystem::path folder =
       arguments.output.empty() ? capture.name + "-normals" : arguments.output;
   CheckOutputFolder(capture, folder);

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "nerf/base/atomic_file.h"
@@ -13,6 +14,7 @@
 #include "nerf/commands/training_display.h"
 #include "sfm/colmap_runner.h"
 #include "sfm/film.h"
+#include "sfm/pose_input.h"
 #include "sfm/transforms_json.h"
 
 namespace nerf {
@@ -52,8 +54,8 @@ void PrintReport(const sfm::ColmapReport& report, const fs::path& transforms) {
 void RunPoses(const PosesArguments& arguments) {
   fs::path folder = fs::absolute(arguments.folder).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // a trailing slash
-  const bool is_film = sfm::HasFilmExtension(folder) && fs::is_regular_file(folder);
-  if (is_film) folder.replace_extension();
+  const std::optional<fs::path> film = sfm::FindFilm(arguments.folder);
+  if (sfm::HasFilmExtension(folder)) folder.replace_extension();
   const fs::path output = arguments.output.empty()
                               ? fs::path("runs") / (folder.filename().string() + "-poses")
                               : fs::path(arguments.output);
@@ -67,11 +69,11 @@ void RunPoses(const PosesArguments& arguments) {
   sfm::ColmapReport report;
   sfm::ColmapOptions colmap = arguments.colmap;
   fs::path photos = arguments.folder;
-  if (is_film) {
+  if (film) {
     photos = output / "frames";
     MakeOutputFolder(output);
-    const sfm::FilmFrames frames = sfm::ExtractFrames(arguments.folder, photos, arguments.frames);
-    fmt::print("{}: {}\n", arguments.folder, DescribeFrames(frames, photos));
+    const sfm::FilmFrames frames = sfm::ExtractFrames(*film, photos, arguments.frames);
+    fmt::print("{}: {}\n", film->string(), DescribeFrames(frames, photos));
     std::fflush(stdout);
     if (colmap.matcher == "auto") colmap.matcher = "sequential";
   }

@@ -69,6 +69,11 @@ std::vector<fs::path> ImageFilesIn(const fs::path& folder) {
 
 std::optional<fs::path> FindImageFile(const fs::path& path) {
   std::error_code error;
+  if (path.native().find('\\') != std::string::npos && !fs::is_regular_file(path, error)) {
+    std::string with_slashes = path.string();
+    std::ranges::replace(with_slashes, '\\', '/');
+    return FindImageFile(with_slashes);
+  }
   for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".exr"}) {
     fs::path file = path;
     file += extension;

@@ -19,7 +19,8 @@ std::vector<std::filesystem::path> ImageFilesIn(const std::filesystem::path& fol
 // The image file that a list of photographs means by `path`: that file; or, where it does not
 // exist, the one whose name differs in upper and lower case only, as after a copy from a camera's
 // card; or the one that has the extension of an image after this name, which Blender's exporter
-// omits. nullopt if there is none, or several differ in upper and lower case only.
+// omits. Backslashes between folders, of lists made on Windows, count as slashes where no file has
+// them in its name. nullopt if there is none, or several differ in upper and lower case only.
 std::optional<std::filesystem::path> FindImageFile(const std::filesystem::path& path);
 
 // Reads only the header. nullopt where OpenImageIO finds no image in the file.

@@ -1,6 +1,7 @@
 #include "nerf/light/light_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -8,6 +9,7 @@
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
+#include "nerf/base/text.h"
 #include "nerf/image/image_files.h"
 
 namespace nerf {
@@ -32,19 +34,36 @@ std::optional<std::vector<double>> NumbersIn(const std::string& text) {
   return numbers;
 }
 
-// The name is what comes up to the last word with the extension of an image. Folders are dropped,
-// those of Windows too.
-std::optional<Line> ParseLine(const std::string& line) {
-  std::size_t end_of_name = 0;
+bool IsNumber(const std::string& word) {
+  char* end = nullptr;  // "inf" and "nan" are numbers, if wrong ones
+  std::strtod(word.c_str(), &end);
+  return end != word.c_str() && *end == '\0';
+}
+
+// Where the name of an image ends that a line begins with; 0 if there is none. It is what comes up
+// to the first word with the extension of an image, or else a first word that begins with a letter.
+std::size_t EndOfName(const std::string& line) {
+  constexpr const char* kBlanks = " \t\r";
+  std::size_t end_of_word = 0;
   for (std::size_t at = 0; at < line.size();) {
-    const std::size_t begin = line.find_first_not_of(" \t\r", at);
+    const std::size_t begin = line.find_first_not_of(kBlanks, at);
     if (begin == std::string::npos) break;
-    at = std::min(line.find_first_of(" \t\r", begin), line.size());
+    at = std::min(line.find_first_of(kBlanks, begin), line.size());
     std::string word = line.substr(begin, at - begin);
+    const bool is_first = end_of_word == 0;
+    if (is_first && (word[0] == '#' || IsNumber(word))) return 0;
+    if (is_first && std::isalpha(static_cast<unsigned char>(word[0]))) end_of_word = at;
+    if (is_first && end_of_word == 0) end_of_word = std::string::npos;  // '"', '/', ...
     if (word.ends_with('"')) word.pop_back();
-    if (HasImageExtension(word)) end_of_name = at;
+    if (HasImageExtension(word)) return at;
   }
+  return end_of_word == std::string::npos ? 0 : end_of_word;
+}
+
+// Folders of the name are dropped, those of Windows too.
+std::optional<Line> ParseLine(const std::string& line) {
   Line parsed;
+  const std::size_t end_of_name = EndOfName(line);
   if (end_of_name > 0) {
     const std::size_t begin = line.find_first_not_of(" \t\"");
     std::string name = line.substr(begin, end_of_name - begin);
@@ -52,14 +71,14 @@ std::optional<Line> ParseLine(const std::string& line) {
     parsed.image = name.substr(name.find_last_of("/\\") + 1);
   }
   const std::string rest = line.substr(end_of_name);
-  const auto numbers = NumbersIn(end_of_name > 0 ? rest : rest.substr(0, rest.find('#')));
+  const auto numbers = NumbersIn(rest.substr(0, rest.find('#')));
   if (!numbers) return std::nullopt;
   parsed.numbers = *numbers;
   return parsed;
 }
 
 void ReadIntensities(const std::filesystem::path& file, LightList& list) {
-  std::istringstream text(ReadWholeFile(file));
+  std::istringstream text(WithoutBom(ReadWholeFile(file)));
   std::size_t next = 0;
   int line_number = 0;
   for (std::string line; std::getline(text, line);) {
@@ -103,7 +122,7 @@ DirectionalLight LightFrom(const std::vector<double>& numbers, const std::string
 }  // namespace
 
 LightList ReadLights(const std::filesystem::path& file) {
-  std::istringstream text(ReadWholeFile(file));
+  std::istringstream text(WithoutBom(ReadWholeFile(file)));
   LightList list;
   std::optional<double> announced;
   int line_number = 0;

@@ -20,8 +20,8 @@ struct LightList {
 //   x y z              direction from the subject to the light, of any length > 0
 //   x y z i            with an intensity
 //   x y z r g b        with an intensity for each channel
-//   NAME x y z ...     of the image of that name (the .lp files of RTI); NAME ends with the
-//                      extension of an image and may have blanks and folders
+//   NAME x y z ...     of the image of that name (the .lp files of RTI); NAME begins with a letter,
+//                      or ends with the extension of an image, and then may have blanks and folders
 // The first line may be a single number, how many lights follow (as in the data sets of the
 // universities of Washington and Harvard). Empty lines and text after a # are ignored. Beside a
 // file light_directions.txt, light_intensities.txt has the intensities, "r g b" or "i" a line (as

@@ -78,6 +78,29 @@ TEST_F(Film, IsTurnedAsItsFlagSays) {
   EXPECT_EQ(size->height, 96);
 }
 
+// Whatever goes wrong, frames that were there stay, and so do files beside them.
+TEST_F(Film, FramesAreReplacedOnlyByOthers) {
+  Extract(Make("clip.mp4", "1"), 4);
+  EXPECT_THAT(test::InputErrorOf([&] { Extract(folder_.Write("broken.mp4", "no film"), 4); }),
+              HasSubstr("cannot be read as a film"));
+  EXPECT_EQ(ImageFilesIn(Frames()).size(), 4u);
+  fs::create_directory(Frames() / "masks");
+  EXPECT_THAT(test::InputErrorOf([&] { Extract(folder_.path() / "clip.mp4", 5); }),
+              HasSubstr("contains files that are no frames"));
+  EXPECT_TRUE(fs::exists(Frames() / "masks"));
+  EXPECT_TRUE(Extract(folder_.path() / "clip.mp4", 4).existed);
+}
+
+TEST_F(Film, OfUnknownLengthIsMeasured) {
+  const fs::path whole = Make("whole.mkv", "2"), stream = folder_.path() / "stream.mkv";
+  const std::string command = "ffmpeg -nostdin -v error -i '" + whole.string() +
+                              "' -c copy -f matroska - | cat > '" + stream.string() + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const FilmFrames frames = Extract(stream, 8);
+  EXPECT_EQ(frames.frames, 8);
+  EXPECT_NEAR(frames.seconds, 2, 0.2);
+}
+
 TEST_F(Film, ThatCannotBeReadIsNamed) {
   const fs::path broken = folder_.Write("broken.mp4", "no film");
   EXPECT_THAT(test::InputErrorOf([&] { Extract(broken, 4); }),
@@ -85,7 +108,7 @@ TEST_F(Film, ThatCannotBeReadIsNamed) {
   const fs::path film = Make("clip.mp4", "1");
   folder_.Write("mine/notes.txt", "x");
   EXPECT_THAT(test::InputErrorOf([&] { ExtractFrames(film, folder_.path() / "mine", 4); }),
-              HasSubstr("no frames of a film"));
+              HasSubstr("no frames of this film"));
   EXPECT_TRUE(fs::exists(folder_.path() / "mine/notes.txt"));
 }
 

@@ -150,6 +150,14 @@ TEST(PhotoFolder, PhotosInSubFoldersHaveThemInTheirNames) {
   const PhotoFolder folder = CheckPhotos(files);
   EXPECT_THAT(Names(folder), ElementsAre("left/1.png", "right/1.png", "right/far/2.png"));
   EXPECT_EQ(DescribeSubFolders(files), "");
+  // Links are followed, in circles too.
+  fs::create_directory_symlink(scratch.path(), scratch.path() / "left/again");
+  EXPECT_EQ(ListPhotos(scratch.path()).size(), 3u);
+  const ScratchFolder elsewhere;
+  WritePhoto(elsewhere.path() / "7.png", 20, 10);
+  fs::create_directory_symlink(elsewhere.path(), scratch.path() / "third");
+  EXPECT_EQ(ListPhotos(scratch.path()).size(), 4u);
+  fs::remove(scratch.path() / "third");
   WritePhoto(scratch.path() / "top.png", 20, 10);
   EXPECT_THAT(
       DescribeSubFolders(ListPhotos(scratch.path())),
@@ -169,7 +177,7 @@ TEST(PhotoFolder, TheSamePhotographIsUsedOnce) {
   EXPECT_EQ(folder.skipped[0].reason, "the same file as a.jpg");
   fs::remove(scratch.path() / "c.png");
   folder = CheckPhotos(ListPhotos(scratch.path()));
-  EXPECT_THAT(InputErrorOf([&] { SkipDuplicates(folder); }), HasSubstr("only 1 of 2"));
+  EXPECT_THAT(InputErrorOf([&] { SkipDuplicates(folder); }), HasSubstr("all the same file, a.jpg"));
 }
 
 TEST(PhotoFolder, ACropIsNoticedByItsExif) {

@@ -122,6 +122,9 @@ TEST_F(PoseInput, AFilmIsAnInput) {
   scratch_.Write("p/clip.MOV", "x");
   ExpectFound("p/clip.MOV", InputKind::kFilm, "", "p/clip.MOV");
   ExpectFound("p", InputKind::kFilm, "", "p/clip.MOV");
+  scratch_.WriteImage("p/thumbnail.jpg", 6, 5);
+  ExpectFound("p", InputKind::kFilm, "", "p/clip.MOV");
+  fs::remove(scratch_.path() / "p/thumbnail.jpg");
   scratch_.Write("p/clip2.mp4", "x");
   EXPECT_THAT(FindError("p"), HasSubstr("contains 2 films; give one of them"));
   WritePhotos("p");

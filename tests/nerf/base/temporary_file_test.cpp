@@ -75,10 +75,12 @@ TEST_F(TemporaryFileTest, OfAKilledWriterIsRemovedByTheNextRun) {
   std::ofstream(ours.path()) << "being written";
   std::ofstream(folder_ / ".other.tmp-anothermachine-1-0.txt") << "being written elsewhere";
   std::ofstream(folder_ / "notes.tmp") << "the user's";
+  std::ofstream(folder_ / fmt::format("thesis.tmp{}", writer)) << "the user's";
   RemoveAbandonedFiles(folder_);
   std::set<std::string> left;
   for (const auto& entry : fs::directory_iterator(folder_)) left.insert(entry.path().filename());
   EXPECT_EQ(left, (std::set<std::string>{ours.path().filename(), "notes.tmp",
+                                         fmt::format("thesis.tmp{}", writer),
                                          ".other.tmp-anothermachine-1-0.txt"}));
 }
 

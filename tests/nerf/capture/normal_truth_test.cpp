@@ -98,6 +98,24 @@ TEST(NormalTruth, OfAnotherShapeIsNamed) {
   };
   EXPECT_THAT(error(folder.Write("broken.mat", "not a MATLAB file")), HasSubstr("broken.mat"));
   EXPECT_THAT(error(folder.path() / "absent.mat"), HasSubstr("absent.mat"));
+  // Cut short.
+  Image large(64, 48, 3, ColorEncoding::kLinear);
+  for (std::size_t i = 0; i < large.pixels.size(); i += 3) {
+    const float x = 0.9f * static_cast<float>(i * 7919 % 1000) / 1000;
+    large.pixels[i] = x, large.pixels[i + 2] = std::sqrt(1 - x * x);
+  }
+  WriteMat(folder.path() / "whole.mat", large, "Normal_gt");
+  EXPECT_NO_THROW(ReadNormalTruth(folder.path() / "whole.mat"));
+  const auto size = fs::file_size(folder.path() / "whole.mat");
+  for (const double share : {0.3, 0.6, 0.9}) {
+    fs::copy_file(folder.path() / "whole.mat", folder.path() / "cut.mat",
+                  fs::copy_options::overwrite_existing);
+    fs::resize_file(folder.path() / "cut.mat",
+                    static_cast<std::uintmax_t>(share * static_cast<double>(size)));
+    EXPECT_THAT(error(folder.path() / "cut.mat"), HasSubstr("cut.mat")) << share;
+  }
+  EXPECT_THAT(test::InputErrorOf([] { CompareNormals(SomeNormals(), Image(5, 3, 3), "none.png"); }),
+              HasSubstr("no normal where one was found"));
   EXPECT_THAT(test::InputErrorOf([] { CompareNormals(Image(4, 3, 3), Image(3, 4, 3), "gt.png"); }),
               testing::AllOf(HasSubstr("gt.png"), HasSubstr("3x4"), HasSubstr("4x3")));
 }

@@ -74,6 +74,16 @@ TEST(FindImageFile, FindsOtherExtensionsAndOtherCase) {
   EXPECT_EQ(found("TWICE.jpg"), "");  // which of the two?
 }
 
+TEST(FindImageFile, ReadsThePathsOfWindows) {
+  const test::ScratchFolder folder;
+  folder.Write("images/left/a.jpg", "x");
+  const auto file = FindImageFile(folder.path() / "images\\left\\A.JPG");
+  ASSERT_TRUE(file);
+  EXPECT_TRUE(std::filesystem::equivalent(*file, folder.path() / "images/left/a.jpg"));
+  folder.Write("odd\\name.png", "x");
+  EXPECT_EQ(FindImageFile(folder.path() / "odd\\name.png"), folder.path() / "odd\\name.png");
+}
+
 TEST(ImageFile, MayHaveAQuestionMarkInItsName) {
   const test::ScratchFolder folder;
   for (const char* name : {"why?.png", "a?b=c.jpg", "what?.exr"}) {

@@ -86,6 +86,15 @@ TEST(LightFile, MayNameItsImages) {
   EXPECT_EQ(list.images, (std::vector<std::string>{"coin 01.jpg", "coin_2.JPG", "3.png"}));
   EXPECT_TRUE(list.lights[1].to_light.isApprox(Eigen::Vector3d::UnitX()));
   EXPECT_TRUE(list.has_intensities);
+  EXPECT_EQ(ReadLights(scratch.Write("stem.lp", "img_1 0 0 1\nimg_2 1 0 0\n")).images,
+            (std::vector<std::string>{"img_1", "img_2"}));
+  // Names in comments are none.
+  const LightList commented = ReadLights(scratch.Write(
+      "commented.txt", "\xef\xbb\xbf# order as c0.png first\n0 0 1 # c0.png\n1 0 0 # c1.png\n"));
+  EXPECT_TRUE(commented.images.empty());
+  EXPECT_EQ(commented.lights.size(), 2u);
+  EXPECT_EQ(ReadLights(scratch.Write("named.txt", "a.jpg 0 0 1 # b.jpg\n")).images,
+            std::vector<std::string>{"a.jpg"});
   const auto error = [&](const char* text) {
     return test::InputErrorOf([&] { ReadLights(scratch.Write("coin.lp", text)); });
   };
