@@ -29,6 +29,7 @@ using nlohmann::json;
 // of a few pixels shows.
 constexpr int kCandidates = 5;
 constexpr int kSide = 640;
+constexpr double kShortest = 0.95;  // seconds; no camera moves far enough in less
 constexpr const char* kRecord = "film.json";
 
 boost::filesystem::path FindProgram(const char* name, const fs::path& film) {
@@ -202,6 +203,12 @@ FilmFrames ExtractFrames(const fs::path& film, const fs::path& folder, int count
   const json record = RecordOf(film, count);
   if (const auto earlier = EarlierFrames(folder, record)) return *earlier;
   const Film probed = Probe(film);
+  if (probed.seconds < kShortest) {
+    throw InputError(
+        "{}: lasts only {:.1f} s; give a film in which the camera moves around the scene for some "
+        "seconds",
+        film.string(), probed.seconds);
+  }
   if (count == 0) count = DefaultFrameCount(probed.seconds);
   // No more candidates than the film has frames.
   double rate = kCandidates * count / probed.seconds;

@@ -19,7 +19,7 @@ struct FilmFrames {
 // the same film and number finds them done. An earlier folder of frames is replaced.
 //   count  of frames; 0: DefaultFrameCount
 // Needs the programs ffmpeg and ffprobe. Throws InputError naming the film if they are missing or
-// cannot read it, or if it has fewer than two frames; or the folder, if it has other files.
+// cannot read it, or if it lasts less than a second; or the folder, if it has other files.
 FilmFrames ExtractFrames(const std::filesystem::path& film, const std::filesystem::path& folder,
                          int count);
 

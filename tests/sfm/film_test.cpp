@@ -105,6 +105,8 @@ TEST_F(Film, ThatCannotBeReadIsNamed) {
   const fs::path broken = folder_.Write("broken.mp4", "no film");
   EXPECT_THAT(test::InputErrorOf([&] { Extract(broken, 4); }),
               testing::AllOf(HasSubstr("broken.mp4"), HasSubstr("cannot be read as a film")));
+  EXPECT_THAT(test::InputErrorOf([&] { Extract(Make("short.mp4", "0.4"), 4); }),
+              testing::AllOf(HasSubstr("short.mp4"), HasSubstr("lasts only 0.4 s")));
   const fs::path film = Make("clip.mp4", "1");
   folder_.Write("mine/notes.txt", "x");
   EXPECT_THAT(test::InputErrorOf([&] { ExtractFrames(film, folder_.path() / "mine", 4); }),
