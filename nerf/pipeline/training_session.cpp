@@ -77,13 +77,9 @@ void TrainingSession::RequireValidation() const {
 // Seconds of the time budget that are spent. The time for finding poses cannot be bounded, so
 // training gets at least half of the budget.
 double TrainingSession::SpentSeconds() const {
-  const double budget = config_.train.time_budget,
-               spent = watch_.Seconds() + (budget > 0 ? kPictureSeconds : 0);
-  if (budget == 0 || spent <= budget / 2) return spent;
-  listener_(Warning{
-      fmt::format("{} of the time budget were spent before training; training still gets {}",
-                  FormatSeconds(spent), FormatSeconds(budget / 2))});
-  return budget / 2;
+  const double budget = config_.train.time_budget;
+  if (budget == 0) return watch_.Seconds();
+  return std::min(watch_.Seconds() + kPictureSeconds, budget / 2);
 }
 
 double TrainingSession::TrainingSeconds() const {
@@ -173,11 +169,16 @@ void TrainingSession::DecideEffects() {
 }
 
 void TrainingSession::PlanTimeBudget() {
-  const double spent = SpentSeconds();
+  const double spent = SpentSeconds(), budget = config_.train.time_budget;
+  if (budget > 0 && spent == budget / 2) {
+    listener_(Warning{
+        fmt::format("{} of the time budget were spent before training; training still gets {}",
+                    FormatSeconds(watch_.Seconds()), FormatSeconds(budget / 2))});
+  }
   trainer_ = std::make_unique<Trainer>(config_, facts_, data_, request_.run, spent);
-  if (config_.train.time_budget == 0 || request_.preset_is_given) return;
-  const BudgetPlan plan = PlanBudget(*trainer_, config_.train.time_budget - spent);
-  listener_(BudgetPlanned{config_.train.time_budget, plan.preset, plan.steps});
+  if (budget == 0 || request_.preset_is_given) return;
+  const BudgetPlan plan = PlanBudget(*trainer_, budget - spent);
+  listener_(BudgetPlanned{budget, plan.preset, plan.steps});
   if (plan.preset == request_.preset) return;
   config_ = ConfigWithDecisions(plan.preset);
   WriteConfig();
