@@ -43,9 +43,8 @@ void ReadFilm(const fs::path& film, const fs::path& frames, const DataOptions& o
   listener(FilmRead{film, frames, sfm::ExtractFrames(film, frames, options.film_frames)});
 }
 
-PosedImages FindPoses(const fs::path& input, const fs::path& folder, const DataOptions& options,
-                      const PipelineListener& listener) {
-  sfm::InputLocation location = sfm::FindInput(input);
+PosedImages FindPoses(sfm::InputLocation location, const fs::path& folder,
+                      const DataOptions& options, const PipelineListener& listener) {
   PosedImages posed;
   sfm::ColmapOptions colmap;
   colmap.threads = NumThreads();
@@ -89,9 +88,10 @@ std::vector<double> PreparedScene::StopsOf(const std::vector<View>& train) const
 PreparedScene PrepareScene(const fs::path& input, const fs::path& folder,
                            const DataOptions& options, const PipelineListener& listener) {
   PreparedScene scene;
-  const sfm::InputKind kind = sfm::FindInput(input).kind;
-  scene.from_photographs = kind == sfm::InputKind::kPhotos || kind == sfm::InputKind::kFilm;
-  scene.posed = FindPoses(input, folder, options, listener);
+  const sfm::InputLocation location = sfm::FindInput(input);
+  scene.from_photographs =
+      location.kind == sfm::InputKind::kPhotos || location.kind == sfm::InputKind::kFilm;
+  scene.posed = FindPoses(location, folder, options, listener);
   ReportMissing(scene.posed, listener);
   AssignSplits(scene.posed, options);
   scene.normalized_from_world = NormalizeScene(scene.posed);
