@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 namespace nerf::sfm {
 
@@ -13,6 +14,20 @@ struct FilmFrames {
   double seconds = 0;    // length of the film
   bool existed = false;  // written by an earlier call
 };
+
+struct FilmPlan {
+  int frames = 0;
+  int longest_side = 0;  // of a frame, pixels
+  double seconds = 0;    // that ExtractFrames takes, roughly
+};
+
+// What ExtractFrames will do. Throws as it does.
+FilmPlan PlanFrames(const std::filesystem::path& film, int count);
+
+// The frames that an earlier ExtractFrames took from this film with this count; nothing if there
+// are none. Throws InputError naming the folder if it has files that must not be replaced.
+std::optional<FilmFrames> EarlierFrames(const std::filesystem::path& film,
+                                        const std::filesystem::path& folder, int count);
 
 // Takes sharp frames at even distances out of a film (ChooseFrames), upright as the film is shown,
 // and writes them to a folder as frame_00001.jpg, ... with film.json, by which a second call with

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -35,6 +36,14 @@ bool IsMap(const matvar_t& variable) {
                        (variable.class_type == MAT_C_DOUBLE || variable.class_type == MAT_C_SINGLE);
   return is_real && variable.rank == 3 && variable.dims[2] == 3 && variable.dims[0] > 0 &&
          variable.dims[1] > 0;
+}
+
+// Whether a file of this many bytes can hold the values: deflate shrinks at most 1032 times.
+bool Fits(const matvar_t& variable, std::uintmax_t file_bytes) {
+  constexpr double kMostShrunk = 1032;
+  double bytes = variable.class_type == MAT_C_DOUBLE ? 8 : 4;
+  for (int i = 0; i < 3; ++i) bytes *= static_cast<double>(variable.dims[i]);
+  return bytes <= kMostShrunk * static_cast<double>(file_bytes);
 }
 
 // Whether all values were read. Normals of 0 are in the background; true ones are in every channel,
@@ -78,7 +87,8 @@ Image ReadMat(const fs::path& path) {
   }
   const Variable variable(map_name.empty() ? nullptr
                                            : Mat_VarReadInfo(file.get(), map_name.c_str()));
-  if (variable && (Mat_VarReadDataAll(file.get(), variable.get()) != 0 || !IsComplete(*variable))) {
+  if (variable && (!Fits(*variable, fs::file_size(path)) ||
+                   Mat_VarReadDataAll(file.get(), variable.get()) != 0 || !IsComplete(*variable))) {
     throw InputError("{}: damaged or truncated", path.string());
   }
   if (!variable) {

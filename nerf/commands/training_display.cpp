@@ -51,6 +51,12 @@ void TrainingDisplay::operator()(const PipelineEvent& event) {
 void TrainingDisplay::Show(const Warning& event) { spdlog::warn("{}", event.text); }
 
 void TrainingDisplay::Show(const WaitEstimated& event) {
+  if (event.film_seconds > 0) {
+    Print("{} frames of the film: choosing them takes about {}, their poses {}, training {}\n",
+          event.photographs, FormatDuration(event.film_seconds), FormatDuration(event.pose_seconds),
+          FormatDuration(event.training_seconds));
+    return;
+  }
   Print("{} photographs: their poses take about {}, then training about {}\n", event.photographs,
         FormatDuration(event.pose_seconds), FormatDuration(event.training_seconds));
 }

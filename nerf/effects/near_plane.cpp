@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "nerf/base/quantile.h"
+#include "nerf/inspect/point_shares.h"
 #include "nerf/sampling/ray_marcher.h"
 
 namespace nerf {

@@ -12,6 +12,7 @@
 #include "nerf/image/image_io.h"
 #include "nerf/image/mask.h"
 #include "nerf/scene/camera.h"
+#include "nerf/scene/photograph.h"
 
 namespace nerf {
 namespace {

@@ -28,15 +28,16 @@ namespace nerf {
 struct Warning {
   std::string text;
 };
+// How long everything will take, roughly, before anything is done.
+struct WaitEstimated {
+  int photographs = 0;      // or frames of a film
+  double film_seconds = 0;  // for taking frames out of a film
+  double pose_seconds = 0, training_seconds = 0;
+};
 // Frames were taken out of a film.
 struct FilmRead {
   std::filesystem::path film, folder;
   sfm::FilmFrames frames;
-};
-// How long everything will take, roughly, before COLMAP begins.
-struct WaitEstimated {
-  int photographs = 0;
-  double pose_seconds = 0, training_seconds = 0;
 };
 // COLMAP found the poses of plain photographs.
 struct PosesFound {

@@ -19,6 +19,7 @@
 #include "nerf/pipeline/training_picture.h"
 #include "nerf/pipeline/training_resolution.h"
 #include "sfm/colmap_estimate.h"
+#include "sfm/film.h"
 #include "sfm/photo_folder.h"
 #include "sfm/pose_input.h"
 #include "sfm/transforms_json.h"
@@ -87,18 +88,31 @@ double TrainingSession::TrainingSeconds() const {
   return train.time_budget > 0 ? train.time_budget : ApproximateSeconds(train.steps);
 }
 
-// For photographs whose poses are not found yet.
+// For photographs and films whose poses are not found yet.
 void TrainingSession::EstimateWait() const {
   const sfm::InputLocation input = sfm::FindInput(request_.input);
-  if (input.kind != sfm::InputKind::kPhotos || fs::exists(ColmapPath(request_.run))) return;
-  const std::vector<sfm::PhotoFile> files = sfm::ListPhotos(input.images);
-  const auto size = ReadImageSize(files.front().path);
-  if (!size) return;
-  const auto photographs = static_cast<int>(files.size());
-  listener_(WaitEstimated{
-      photographs,
-      sfm::EstimatePoseSeconds(photographs, std::max(size->width, size->height), {}, NumThreads()),
-      TrainingSeconds()});
+  if (fs::exists(ColmapPath(request_.run))) return;
+  WaitEstimated wait;
+  wait.training_seconds = TrainingSeconds();
+  sfm::ColmapOptions colmap;
+  int longest_side = 0;
+  if (input.kind == sfm::InputKind::kPhotos) {
+    const std::vector<sfm::PhotoFile> files = sfm::ListPhotos(input.images);
+    wait.photographs = static_cast<int>(files.size());
+    if (const auto size = ReadImageSize(files.front().path)) {
+      longest_side = std::max(size->width, size->height);
+    }
+  } else if (input.kind == sfm::InputKind::kFilm) {
+    const sfm::FilmPlan film = sfm::PlanFrames(input.images, config_.data.film_frames);
+    wait.photographs = film.frames;
+    wait.film_seconds = film.seconds;
+    longest_side = film.longest_side;
+    colmap.matcher = "sequential";
+  }
+  if (longest_side == 0) return;
+  wait.pose_seconds =
+      sfm::EstimatePoseSeconds(wait.photographs, longest_side, colmap, NumThreads());
+  listener_(wait);
 }
 
 // Poses that are given are for pixels of a size that somebody chose; photographs have that of a

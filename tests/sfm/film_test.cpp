@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "nerf/base/atomic_file.h"
 #include "nerf/image/image_files.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
@@ -99,6 +100,31 @@ TEST_F(Film, OfUnknownLengthIsMeasured) {
   const FilmFrames frames = Extract(stream, 8);
   EXPECT_EQ(frames.frames, 8);
   EXPECT_NEAR(frames.seconds, 2, 0.2);
+}
+
+TEST_F(Film, PlanIsThatOfTheExtraction) {
+  const fs::path film = Make("clip.mp4", "4");
+  const FilmPlan plan = PlanFrames(film, 0);
+  EXPECT_EQ(plan.frames, Extract(film, 0).frames);
+  EXPECT_EQ(plan.longest_side, 96);
+  EXPECT_GT(plan.seconds, 0);
+  EXPECT_EQ(PlanFrames(film, 7).frames, 7);
+}
+
+// A record that somebody edited, or whose types are wrong, is not believed, and no exception but
+// InputError leaves the reader.
+TEST_F(Film, RecordsOfWrongTypesAreNotBelieved) {
+  const fs::path film = Make("clip.mp4", "2");
+  Extract(film, 6);
+  const fs::path record = Frames() / "film.json";
+  ASSERT_TRUE(EarlierFrames(film, Frames(), 6));
+  const std::string text = ReadWholeFile(record);
+  const std::size_t at = text.find("\"frames\": 6");
+  ASSERT_NE(at, std::string::npos);
+  WriteFileAtomically(record, text.substr(0, at) + "\"frames\": \"6\"" + text.substr(at + 11));
+  EXPECT_FALSE(EarlierFrames(film, Frames(), 6));
+  WriteFileAtomically(record, "{");
+  EXPECT_FALSE(EarlierFrames(film, Frames(), 6));
 }
 
 TEST_F(Film, ThatCannotBeReadIsNamed) {

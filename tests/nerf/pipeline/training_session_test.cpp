@@ -153,6 +153,32 @@ TEST_F(TrainingSessionTest, ChoosesTheResolutionOfPhotographs) {
   EXPECT_EQ(whole.GetConfig().data.downscale, 1);
 }
 
+TEST_F(TrainingSessionTest, EstimatesTheWaitOfAFilmBeforeItIsRead) {
+  const test::FakeColmap colmap;
+  colmap.Set("size", "96 64");
+  colmap.Set("models", "0 6\n");
+  request_.input = folder_.path() / "clip.mp4";
+  request_.assignments.push_back("data.film_frames=6");
+  ASSERT_EQ(std::system(("ffmpeg -nostdin -v error -f lavfi -i "
+                         "testsrc2=size=96x64:rate=25:duration=2 -c:v mpeg4 '" +
+                         request_.input.string() + "'")
+                            .c_str()),
+            0);
+  std::vector<std::string> order;
+  const PipelineListener listener = [&](const PipelineEvent& event) {
+    if (const auto* wait = std::get_if<WaitEstimated>(&event)) {
+      order.emplace_back("wait");
+      EXPECT_EQ(wait->photographs, 6);
+      EXPECT_GT(wait->film_seconds, 0);
+      EXPECT_GT(wait->pose_seconds, 0);
+    }
+    if (std::holds_alternative<FilmRead>(event)) order.emplace_back("film");
+    if (std::holds_alternative<PosesFound>(event)) order.emplace_back("poses");
+  };
+  TrainingSession(request_, Stopwatch(), listener).Run(test::never_stop);
+  EXPECT_THAT(order, testing::ElementsAre("wait", "film", "poses"));
+}
+
 TEST_F(TrainingSessionTest, KeepsTheSizeOfCapturesWithPoses) {
   request_.assignments.push_back("train.time_budget=0");
   bool chosen = false;
