@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
-#include <numeric>
-#include <set>
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
+#include "nerf/kernels/descriptor_matching.h"
 
 namespace nerf::sfm {
 namespace {
@@ -20,178 +18,235 @@ namespace fs = std::filesystem;
 
 // COLMAP's pair_id is image_id1 * kMostImages + image_id2, with image_id1 < image_id2.
 constexpr std::int64_t kMostImages = 2147483647;
+constexpr int kBusyMilliseconds = 2000;
+constexpr int kUncalibrated = 3;  // COLMAP's number for a geometry that is a fundamental matrix
+constexpr int kDegenerate = 1;    // and for none
 
-// Calls work(database) and turns errors of SQLite into an InputError that names the file.
-template <class Work>
-auto WithDatabase(const fs::path& path, int flags, Work work) {
-  try {
-    SQLite::Database database(path.string(), flags);
-    return work(database);
-  } catch (const SQLite::Exception& error) {
-    // Features and matches take hours to compute, so only a damaged database is to be removed.
-    switch (error.getErrorCode()) {
-      case SQLITE_FULL:
-      case SQLITE_IOERR:
-      case SQLITE_CANTOPEN:
-      case SQLITE_READONLY:
-        throw InputError("{}: {}; free some disk space, check permissions, and run again",
-                         path.string(), error.what());
-      case SQLITE_BUSY:
-      case SQLITE_LOCKED:
-        throw InputError("{}: {}; close the program that uses it and run again", path.string(),
-                         error.what());
-      default:
-        throw InputError("{}: {}; remove it and run again", path.string(), error.what());
-    }
+// Features and matches take long to compute, so only a damaged database is to be removed.
+[[noreturn]] void ThrowAbout(const fs::path& path, const SQLite::Exception& error) {
+  switch (error.getErrorCode()) {
+    case SQLITE_FULL:
+    case SQLITE_IOERR:
+    case SQLITE_CANTOPEN:
+    case SQLITE_READONLY:
+      throw InputError("{}: {}; free some disk space, check permissions, and run again",
+                       path.string(), error.what());
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      throw InputError("{}: {}; close the program that uses it and run again", path.string(),
+                       error.what());
+    default:
+      throw InputError("{}: {}; remove it and run again", path.string(), error.what());
   }
 }
 
-// The square of a keypoint's scale. Columns are x, y and either scale and angle or a 2 x 2 matrix.
-float SquaredScale(const float* keypoint, int columns) {
-  if (columns < 6) return columns >= 4 ? keypoint[2] * keypoint[2] : 1.0f;
-  return std::fabs(keypoint[2] * keypoint[5] - keypoint[3] * keypoint[4]);
-}
+// A table of a blob, by rows.
+struct Table {
+  std::size_t rows = 0, columns = 0;
+  std::string bytes;
+};
 
-// The rows `kept` of a blob.
-std::string RowsOf(const SQLite::Column& blob, std::size_t bytes_a_row,
-                   const std::vector<std::size_t>& kept) {
-  const auto* const bytes = static_cast<const char*>(blob.getBlob());
-  std::string rows;
-  for (const std::size_t row : kept) rows.append(bytes + row * bytes_a_row, bytes_a_row);
-  return rows;
-}
-
-std::vector<std::size_t> LargestOf(const SQLite::Column& blob, std::size_t rows, int columns,
-                                   std::size_t wanted) {
-  std::vector<float> numbers(rows * columns);
-  if (static_cast<std::size_t>(blob.getBytes()) != numbers.size() * sizeof(float)) {
-    throw SQLite::Exception("keypoints are truncated");
+Table ReadTable(SQLite::Database& database, const char* name, std::int64_t image,
+                std::size_t bytes_a_number) {
+  SQLite::Statement read(
+      database, std::string("SELECT rows, cols, data FROM ") + name + " WHERE image_id = ?");
+  read.bind(1, image);
+  if (!read.executeStep()) return {};
+  Table table{read.getColumn(0).getUInt(), read.getColumn(1).getUInt(), {}};
+  const SQLite::Column blob = read.getColumn(2);
+  const auto bytes = static_cast<std::size_t>(blob.getBytes());
+  if (table.rows > bytes || bytes != table.rows * table.columns * bytes_a_number) {
+    throw SQLite::Exception(std::string(name) + " are truncated");
   }
-  if (rows > 0) std::memcpy(numbers.data(), blob.getBlob(), numbers.size() * sizeof(float));
-  std::vector<std::size_t> order(rows);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t row) {
-    return SquaredScale(&numbers[row * columns], columns);
-  });
-  order.resize(std::min(order.size(), wanted));
-  std::ranges::sort(order);
-  return order;
+  if (bytes > 0) table.bytes.assign(static_cast<const char*>(blob.getBlob()), bytes);
+  return table;
 }
 
-void Replace(SQLite::Database& database, const std::string& table, std::int64_t image,
-             std::size_t rows, const std::string& data) {
-  SQLite::Statement update(database,
-                           "UPDATE " + table + " SET rows = ?, data = ? WHERE image_id = ?");
-  update.bind(1, static_cast<std::int64_t>(rows));
-  update.bind(2, data.data(), static_cast<int>(data.size()));
-  update.bind(3, image);
-  update.exec();
+// Columns are x, y and either scale and angle or a 2 x 2 matrix.
+float ScaleOf(const float* keypoint, std::size_t columns) {
+  if (columns < 6) return columns >= 4 ? keypoint[2] : 1.0f;
+  return std::sqrt(std::fabs(keypoint[2] * keypoint[5] - keypoint[3] * keypoint[4]));
+}
+
+// Matches as COLMAP stores them: the photograph of the smaller id first.
+std::vector<std::uint32_t> Stored(const std::vector<FeatureMatch>& matches, bool swapped) {
+  std::vector<std::uint32_t> numbers;
+  for (const FeatureMatch& match : matches) {
+    numbers.push_back(swapped ? match.second : match.first);
+    numbers.push_back(swapped ? match.first : match.second);
+  }
+  return numbers;
+}
+
+void BindTable(SQLite::Statement& statement, const std::vector<std::uint32_t>& numbers) {
+  statement.bind(2, static_cast<std::int64_t>(numbers.size() / 2));
+  statement.bind(3, 2);
+  statement.bind(4, numbers.data(), static_cast<int>(numbers.size() * sizeof(numbers[0])));
 }
 
 }  // namespace
 
-void RemoveDatabase(const fs::path& database) {
-  for (const char* suffix : {"", "-shm", "-wal", "-journal"}) RemoveAll(database.string() + suffix);
+struct ColmapDatabase::Connection {
+  explicit Connection(const fs::path& path)
+      : database(path.string(), SQLite::OPEN_READWRITE, kBusyMilliseconds) {}
+  SQLite::Database database;
+};
+
+template <class Work>
+auto ColmapDatabase::Guarded(Work work) const {
+  try {
+    return work(connection_->database);
+  } catch (const SQLite::Exception& error) {
+    ThrowAbout(path_, error);
+  }
 }
 
-void CopyLargestFeatures(const fs::path& database, const fs::path& coarse, int features) {
-  RemoveDatabase(coarse);
-  WithDatabase(database, SQLite::OPEN_READONLY, [&](SQLite::Database& full) {
-    SQLite::Statement copy(full, "VACUUM INTO ?");
-    copy.bind(1, coarse.string());
-    copy.exec();
-  });
-  WithDatabase(coarse, SQLite::OPEN_READWRITE, [&](SQLite::Database& copy) {
-    SQLite::Transaction transaction(copy);
-    copy.exec("DELETE FROM matches");
-    copy.exec("DELETE FROM two_view_geometries");
-    std::vector<std::int64_t> images;
-    for (SQLite::Statement all(copy, "SELECT image_id FROM images"); all.executeStep();) {
-      images.push_back(all.getColumn(0).getInt64());
+ColmapDatabase::ColmapDatabase(fs::path path) : path_(std::move(path)) {
+  try {
+    connection_ = std::make_unique<Connection>(path_);
+    SQLite::Statement all(connection_->database, "SELECT image_id, name FROM images ORDER BY name");
+    while (all.executeStep()) {
+      ids_.push_back(all.getColumn(0).getInt64());
+      names_.push_back(all.getColumn(1).getString());
     }
-    for (const std::int64_t image : images) {
-      SQLite::Statement keypoints(copy,
-                                  "SELECT rows, cols, data FROM keypoints WHERE image_id = ?");
-      SQLite::Statement descriptors(copy,
-                                    "SELECT rows, cols, data FROM descriptors WHERE image_id = ?");
-      keypoints.bind(1, image);
-      descriptors.bind(1, image);
-      if (!keypoints.executeStep() || !descriptors.executeStep()) continue;
-      const std::size_t rows = keypoints.getColumn(0).getUInt();
-      const int columns = keypoints.getColumn(1).getInt(),
-                width = descriptors.getColumn(1).getInt();
-      if (descriptors.getColumn(0).getUInt() != rows || columns < 1 || width < 1 ||
-          static_cast<std::size_t>(descriptors.getColumn(2).getBytes()) != rows * width) {
-        throw SQLite::Exception("keypoints and descriptors differ in number");
-      }
-      const auto kept = LargestOf(keypoints.getColumn(2), rows, columns, features);
-      const std::string kept_keypoints =
-          RowsOf(keypoints.getColumn(2), columns * sizeof(float), kept);
-      const std::string kept_descriptors = RowsOf(descriptors.getColumn(2), width, kept);
-      keypoints.reset();
-      descriptors.reset();
-      Replace(copy, "keypoints", image, kept.size(), kept_keypoints);
-      Replace(copy, "descriptors", image, kept.size(), kept_descriptors);
+  } catch (const SQLite::Exception& error) {
+    ThrowAbout(path_, error);
+  }
+}
+
+ColmapDatabase::~ColmapDatabase() = default;
+
+Features ColmapDatabase::ReadFeatures(int image) const {
+  return Guarded([&](SQLite::Database& database) {
+    const Table keypoints = ReadTable(database, "keypoints", ids_[image], sizeof(float));
+    const Table descriptors = ReadTable(database, "descriptors", ids_[image], 1);
+    if (keypoints.rows != descriptors.rows || (keypoints.rows > 0 && keypoints.columns < 2)) {
+      throw SQLite::Exception("keypoints and descriptors differ in number");
+    }
+    if (descriptors.rows > 0 && descriptors.columns != kernels::kDescriptorSize) {
+      throw SQLite::Exception("has features other than SIFT");
+    }
+    Features features;
+    std::vector<float> numbers(keypoints.rows * keypoints.columns);
+    if (!numbers.empty()) {
+      std::memcpy(numbers.data(), keypoints.bytes.data(), keypoints.bytes.size());
+    }
+    for (std::size_t row = 0; row < keypoints.rows; ++row) {
+      const float* const keypoint = &numbers[row * keypoints.columns];
+      features.positions.emplace_back(keypoint[0], keypoint[1]);
+      features.scales.push_back(ScaleOf(keypoint, keypoints.columns));
+    }
+    features.descriptors.assign(descriptors.bytes.begin(), descriptors.bytes.end());
+    return features;
+  });
+}
+
+std::int64_t ColmapDatabase::PairId(ImagePair pair) const {
+  const auto [lower, upper] = std::minmax(ids_[pair.first], ids_[pair.second]);
+  return lower * kMostImages + upper;
+}
+
+// {-1, -1} for photographs that are not there.
+ImagePair ColmapDatabase::PairOf(std::int64_t id) const {
+  const auto index = [&](std::int64_t image) {
+    const auto found = std::ranges::find(ids_, image);
+    return found == ids_.end() ? -1 : static_cast<int>(found - ids_.begin());
+  };
+  const int a = index(id / kMostImages), b = index(id % kMostImages);
+  if (a < 0 || b < 0) return {-1, -1};
+  return {std::min(a, b), std::max(a, b)};
+}
+
+std::set<ImagePair> ColmapDatabase::MatchedPairs() const {
+  return Guarded([&](SQLite::Database& database) {
+    std::set<ImagePair> pairs;
+    SQLite::Statement all(database, "SELECT pair_id FROM two_view_geometries");
+    while (all.executeStep()) pairs.insert(PairOf(all.getColumn(0).getInt64()));
+    pairs.erase({-1, -1});
+    return pairs;
+  });
+}
+
+std::vector<std::pair<ImagePair, int>> ColmapDatabase::VerifiedPairs() const {
+  return Guarded([&](SQLite::Database& database) {
+    std::vector<std::pair<ImagePair, int>> pairs;
+    SQLite::Statement all(database, "SELECT pair_id, rows FROM two_view_geometries WHERE rows > 0");
+    while (all.executeStep()) {
+      const ImagePair pair = PairOf(all.getColumn(0).getInt64());
+      if (pair.first >= 0) pairs.emplace_back(pair, all.getColumn(1).getInt());
+    }
+    std::ranges::sort(pairs);
+    return pairs;
+  });
+}
+
+std::vector<FeatureMatch> ColmapDatabase::ReadMatches(ImagePair pair) const {
+  return ReadFrom("matches", pair);
+}
+
+std::vector<FeatureMatch> ColmapDatabase::ReadVerified(ImagePair pair) const {
+  return ReadFrom("two_view_geometries", pair);
+}
+
+std::vector<FeatureMatch> ColmapDatabase::ReadFrom(const std::string& table, ImagePair pair) const {
+  return Guarded([&](SQLite::Database& database) {
+    std::vector<FeatureMatch> matches;
+    SQLite::Statement read(database, "SELECT rows, data FROM " + table + " WHERE pair_id = ?");
+    read.bind(1, PairId(pair));
+    if (!read.executeStep()) return matches;
+    matches.resize(read.getColumn(0).getUInt());
+    const SQLite::Column blob = read.getColumn(1);
+    if (static_cast<std::size_t>(blob.getBytes()) != matches.size() * sizeof(FeatureMatch)) {
+      throw SQLite::Exception("matches are truncated");
+    }
+    if (!matches.empty()) std::memcpy(matches.data(), blob.getBlob(), blob.getBytes());
+    if (ids_[pair.first] > ids_[pair.second]) {
+      for (FeatureMatch& match : matches) std::swap(match.first, match.second);
+    }
+    return matches;
+  });
+}
+
+void ColmapDatabase::Write(std::span<const PairMatches> results) {
+  Guarded([&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database);
+    SQLite::Statement matches(
+        database, "INSERT OR REPLACE INTO matches (pair_id, rows, cols, data) VALUES (?, ?, ?, ?)");
+    SQLite::Statement geometry(database,
+                               "INSERT OR REPLACE INTO two_view_geometries (pair_id, rows, cols, "
+                               "data, config, F) VALUES (?, ?, ?, ?, ?, ?)");
+    for (const PairMatches& result : results) {
+      const bool swapped = ids_[result.pair.first] > ids_[result.pair.second];
+      const std::int64_t id = PairId(result.pair);
+      const std::vector<std::uint32_t> all = Stored(result.matches, swapped);
+      const std::vector<std::uint32_t> verified = Stored(result.verified, swapped);
+      // COLMAP stores matrices by rows.
+      const Eigen::Matrix3d by_columns =
+          swapped ? result.fundamental : Eigen::Matrix3d(result.fundamental.transpose());
+      matches.bind(1, id);
+      BindTable(matches, all);
+      matches.exec();
+      matches.reset();
+      geometry.bind(1, id);
+      BindTable(geometry, verified);
+      geometry.bind(5, verified.empty() ? kDegenerate : kUncalibrated);
+      geometry.bind(6, by_columns.data(), static_cast<int>(9 * sizeof(double)));
+      geometry.exec();
+      geometry.reset();
     }
     transaction.commit();
   });
 }
 
-std::vector<std::string> ReadImageNames(const fs::path& database) {
-  return WithDatabase(database, SQLite::OPEN_READONLY, [](SQLite::Database& read) {
-    std::vector<std::string> names;
-    for (SQLite::Statement all(read, "SELECT name FROM images ORDER BY name"); all.executeStep();) {
-      names.push_back(all.getColumn(0).getString());
-    }
-    return names;
+void ColmapDatabase::RemoveMatches() {
+  Guarded([](SQLite::Database& database) {
+    database.exec("DELETE FROM matches");
+    database.exec("DELETE FROM two_view_geometries");
   });
 }
 
-std::vector<MatchedPair> ReadMatchedPairs(const fs::path& database) {
-  return WithDatabase(database, SQLite::OPEN_READONLY, [](SQLite::Database& read) {
-    std::map<std::int64_t, std::string> names;
-    for (SQLite::Statement all(read, "SELECT image_id, name FROM images"); all.executeStep();) {
-      names[all.getColumn(0).getInt64()] = all.getColumn(1).getString();
-    }
-    std::vector<MatchedPair> pairs;
-    SQLite::Statement all(read, "SELECT pair_id, rows FROM two_view_geometries WHERE rows > 0");
-    while (all.executeStep()) {
-      const std::int64_t pair = all.getColumn(0).getInt64();
-      const auto first = names.find(pair / kMostImages), second = names.find(pair % kMostImages);
-      if (first == names.end() || second == names.end()) continue;
-      pairs.push_back({first->second, second->second, all.getColumn(1).getInt()});
-      if (pairs.back().first > pairs.back().second) {
-        std::swap(pairs.back().first, pairs.back().second);
-      }
-    }
-    std::ranges::sort(pairs, {}, [](const MatchedPair& p) { return std::tie(p.first, p.second); });
-    return pairs;
-  });
-}
-
-std::vector<std::pair<std::string, std::string>> SelectPairs(const std::vector<MatchedPair>& pairs,
-                                                             std::vector<std::string> names,
-                                                             int each, int neighbours) {
-  std::map<std::string, std::vector<const MatchedPair*>> of_photo;
-  for (const MatchedPair& pair : pairs) {
-    of_photo[pair.first].push_back(&pair);
-    of_photo[pair.second].push_back(&pair);
-  }
-  std::set<std::pair<std::string, std::string>> selected;
-  for (auto& [name, own] : of_photo) {
-    std::ranges::stable_sort(own, std::greater<>(), &MatchedPair::inliers);
-    for (std::size_t k = 0; k < own.size() && k < static_cast<std::size_t>(each); ++k) {
-      selected.emplace(own[k]->first, own[k]->second);
-    }
-  }
-  std::ranges::sort(names);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    for (std::size_t k = 1; k <= static_cast<std::size_t>(neighbours) && i + k < names.size();
-         ++k) {
-      selected.emplace(names[i], names[i + k]);
-    }
-  }
-  return {selected.begin(), selected.end()};
+void RemoveDatabase(const fs::path& database) {
+  for (const char* suffix : {"", "-shm", "-wal", "-journal"}) RemoveAll(database.string() + suffix);
 }
 
 }  // namespace nerf::sfm

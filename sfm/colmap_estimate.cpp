@@ -6,13 +6,14 @@
 namespace nerf::sfm {
 namespace {
 
-// Seconds of one core. Measured with COLMAP 3.8 on 50 photographs of 1080x1920: features 20 s,
-// guided matches 78 s, mapper 33 s; and on 36 of 400x300: 2.5 s, 17 s, 2.6 s; on two cores each.
-constexpr double kFeaturesPerMegapixel = 0.6;
-constexpr double kMatchPerPair = 0.2;  // of 2048 features each; grows with their product
+// Seconds of one core. Measured with COLMAP 3.8 on 50 photographs of 1080x1920: features 11 s,
+// guided matches 2.4 s, mapper 10 s; and on 36 of 400x300: 2.6 s, 0.4 s, 1.3 s; on two cores each.
+constexpr double kFeaturesPerMegapixel = 0.3;
+constexpr int kEnlarged = 1200;  // smaller photographs are enlarged by two, as in ColmapSteps
+constexpr double kMatchPerPair = 0.013;  // of 2048 features each; grows with their product
 constexpr double kUsualFeatures = 2048;
 constexpr double kFullMegapixels = 0.6;  // smaller photographs have fewer features
-constexpr double kMapping = 0.3;  // per photograph of few; more of them need more adjustments
+constexpr double kMapping = 0.09;  // per photograph of few; more of them need more adjustments
 constexpr double kManyPhotographs = 25;
 constexpr double kGrowth = 0.7;
 
@@ -36,7 +37,8 @@ double EstimatePoseSeconds(int photographs, int longest_side, const ColmapOption
   const double features =
       options.max_num_features * std::min(1.0, std::sqrt(megapixels / kFullMegapixels));
   const double per_pair = kMatchPerPair * std::pow(features / kUsualFeatures, 2);
-  const double parallel = kFeaturesPerMegapixel * megapixels * count + per_pair * matched;
+  const double searched = megapixels * (side < kEnlarged ? 4 : 1);
+  const double parallel = kFeaturesPerMegapixel * searched * count + per_pair * matched;
   return parallel / std::max(1, threads) +
          kMapping * features / kUsualFeatures * count *
              std::pow(std::max(1.0, count / kManyPhotographs), kGrowth);

@@ -8,8 +8,7 @@ struct ColmapOptions {
   // Which pairs of photographs are matched:
   //   "exhaustive"  all
   //   "sequential"  neighbours by name: the next 20, and those at distances of powers of two
-  //   "guided"      all by their largest features, then the most similar pairs by all features;
-  //                 exhaustive where a name contains a space
+  //   "guided"      all by their largest features, then the most similar pairs by all features
   //   "auto"        sequential for more than 100 photographs of one size that are numbered without
   //                 large gaps, exhaustive for up to 20, else guided
   std::string matcher = "auto";

@@ -19,7 +19,8 @@ namespace {
 
 namespace bp = boost::process;
 
-//   temporary  folder for temporary files and the logs that COLMAP writes by itself; empty: as usual
+//   temporary  folder for temporary files and the logs that COLMAP writes by itself; empty: as
+//   usual
 bp::child Start(const std::filesystem::path& executable, std::vector<std::string> arguments,
                 bp::ipstream& output, const std::filesystem::path& temporary = {}) {
   bp::environment environment = boost::this_process::environment();
@@ -96,7 +97,7 @@ bool ColmapProgram::ResolvesLinks() {
 }
 
 std::string ColmapProgram::KnownOption(const std::string& command,
-                                       std::initializer_list<const char*> names) {
+                                       const std::vector<std::string>& names) {
   const auto [known, is_new] = options_.try_emplace(command);
   if (is_new) {
     bp::ipstream output;
@@ -108,7 +109,7 @@ std::string ColmapProgram::KnownOption(const std::string& command,
     }
     child.wait();
   }
-  for (const char* name : names) {
+  for (const std::string& name : names) {
     if (known->second.contains(name)) return name;
   }
   return {};

@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
@@ -30,7 +29,7 @@ class ColmapProgram {
 
   // The first of the names that `colmap COMMAND -h` lists; an empty string where it lists none.
   // Runs the program once per command.
-  std::string KnownOption(const std::string& command, std::initializer_list<const char*> names);
+  std::string KnownOption(const std::string& command, const std::vector<std::string>& names);
 
   struct Outcome {
     int exit_code = 0;

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <regex>
 
@@ -38,30 +37,14 @@ std::string Listed(const std::vector<std::string>& names) {
   return text;
 }
 
-// COLMAP's lists of pairs separate names by spaces and take '#' for a comment.
-bool FitsIntoPairList(const ColmapImage& image) {
-  return !image.name.starts_with('#') &&
-         std::ranges::none_of(image.name, [](unsigned char c) { return std::isspace(c) != 0; });
-}
-
 std::string ChooseMatcher(const std::string& wanted, const std::vector<Photo>& photos,
                           const std::vector<ColmapImage>& plan) {
-  std::string matcher = wanted;
-  if (matcher == "auto") {
-    std::vector<std::string> names;
-    for (const Photo& photo : photos) names.push_back(photo.name);
-    const bool one_size = plan.front().name.find('/') == std::string::npos;
-    const bool sequence = one_size && photos.size() > kSequenceMin && IsNumberedSequence(names);
-    matcher = sequence ? "sequential" : photos.size() <= kExhaustiveMost ? "exhaustive" : "guided";
-  }
-  if (matcher != "guided") return matcher;
-  const auto found = std::ranges::find_if_not(plan, FitsIntoPairList);
-  if (found == plan.end()) return matcher;
-  spdlog::warn(
-      "{}: guided matching does not support names that contain spaces or begin with '#'; all pairs "
-      "are matched, which takes longer",
-      found->name);
-  return "exhaustive";
+  if (wanted != "auto") return wanted;
+  std::vector<std::string> names;
+  for (const Photo& photo : photos) names.push_back(photo.name);
+  const bool one_size = plan.front().name.find('/') == std::string::npos;
+  const bool sequence = one_size && photos.size() > kSequenceMin && IsNumberedSequence(names);
+  return sequence ? "sequential" : photos.size() <= kExhaustiveMost ? "exhaustive" : "guided";
 }
 
 // Runs all steps, and repeats the last ones with more effort where too few photographs are

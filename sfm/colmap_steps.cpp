@@ -24,6 +24,28 @@ const std::vector<std::string> kRelaxedMapping = {
     "--Mapper.init_min_num_inliers",     "50", "--Mapper.init_min_tri_angle", "8",
     "--Mapper.abs_pose_min_num_inliers", "15", "--Mapper.min_num_matches",    "10"};
 
+// The mapper spends most of its time on adjusting again what hardly moves any more. These bounds
+// halve that time and change poses by less than their error (docs/poses.md); a global adjustment
+// still ends the mapping. Newer names of an option follow the older one.
+struct MapperBound {
+  std::vector<std::string> names;
+  const char* value;
+};
+const std::vector<MapperBound> kMapperBounds = {
+    {{"Mapper.ba_global_images_ratio", "Mapper.ba_global_frames_ratio"}, "1.4"},
+    {{"Mapper.ba_global_points_ratio"}, "1.4"},
+    {{"Mapper.ba_global_max_refinements"}, "2"},
+    {{"Mapper.ba_global_max_num_iterations"}, "20"},
+    {{"Mapper.ba_global_function_tolerance"}, "1e-6"},
+    {{"Mapper.ba_local_max_refinements"}, "1"},
+    {{"Mapper.ba_local_max_num_iterations"}, "10"},
+    {{"Mapper.ba_local_function_tolerance"}, "1e-5"},
+    {{"Mapper.ba_local_num_images"}, "4"},
+    {{"Mapper.ba_min_num_residuals_for_multi_threading",
+      "Mapper.ba_min_num_residuals_for_cpu_multi_threading"},
+     "5000"},
+};
+
 // The steps remove old results, so the workspace must not contain other files.
 fs::path OpenWorkspace(fs::path workspace) {
   workspace = fs::absolute(workspace).lexically_normal();
@@ -100,11 +122,12 @@ void ColmapSteps::ExtractFeatures() {
                            "--ImageReader.camera_model",
                            options_.camera_model};
     const std::string command = "feature_extractor";
-    AddKnown(command, {"SiftExtraction.use_gpu", "FeatureExtraction.use_gpu"}, 0, arguments);
+    AddKnown(command, {"SiftExtraction.use_gpu", "FeatureExtraction.use_gpu"}, "0", arguments);
     AddKnown(command, {"SiftExtraction.max_image_size", "FeatureExtraction.max_image_size"},
-             options_.max_image_size, arguments);
-    AddKnown(command, {"SiftExtraction.max_num_features"}, options_.max_num_features, arguments);
-    AddKnown(command, {"SiftExtraction.first_octave"}, FirstOctave(), arguments);
+             std::to_string(options_.max_image_size), arguments);
+    AddKnown(command, {"SiftExtraction.max_num_features"},
+             std::to_string(options_.max_num_features), arguments);
+    AddKnown(command, {"SiftExtraction.first_octave"}, std::to_string(FirstOctave()), arguments);
     AddThreads(command, {"SiftExtraction.num_threads", "FeatureExtraction.num_threads"}, arguments);
     RunOrThrow("features", command, arguments);
   });
@@ -115,12 +138,6 @@ void ColmapSteps::Map() {
     RemoveAll(Sparse());
     RunMapper("mapper", Sparse(), {});
   });
-}
-
-void ColmapSteps::MatchAllAndMap() {
-  Step("matches_all", json::object(), Database(),
-       [&](StepLedger::State) { MatchExhaustively("matches_all"); });
-  MapAgain("mapper_all", {});
 }
 
 void ColmapSteps::MapRelaxed() { MapAgain("mapper_relaxed", kRelaxedMapping); }
@@ -167,17 +184,19 @@ void ColmapSteps::Step(const std::string& name, const json& inputs, const fs::pa
   seconds_.emplace_back(name, ledger_.Seconds(name));
 }
 
-void ColmapSteps::AddKnown(const std::string& command, std::initializer_list<const char*> names,
-                           int value, Arguments& arguments) {
+void ColmapSteps::AddKnown(const std::string& command, const std::vector<std::string>& names,
+                           const std::string& value, Arguments& arguments) {
   const std::string option = colmap_.KnownOption(command, names);
   if (option.empty()) return;
   arguments.push_back("--" + option);
-  arguments.push_back(std::to_string(value));
+  arguments.push_back(value);
 }
 
-void ColmapSteps::AddThreads(const std::string& command, std::initializer_list<const char*> names,
+void ColmapSteps::AddThreads(const std::string& command, const std::vector<std::string>& names,
                              Arguments& arguments) {
-  if (options_.threads > 0) AddKnown(command, names, options_.threads, arguments);
+  if (options_.threads > 0) {
+    AddKnown(command, names, std::to_string(options_.threads), arguments);
+  }
 }
 
 ColmapProgram::Outcome ColmapSteps::Run(const std::string& step, const std::string& command,
@@ -206,6 +225,9 @@ void ColmapSteps::RunMapper(const std::string& step, const fs::path& target,
   Arguments arguments = {"--database_path", Database().string(), "--image_path",
                          Images().string(), "--output_path",     target.string()};
   arguments.insert(arguments.end(), thresholds.begin(), thresholds.end());
+  for (const MapperBound& bound : kMapperBounds) {
+    AddKnown("mapper", bound.names, bound.value, arguments);
+  }
   AddThreads("mapper", {"Mapper.num_threads"}, arguments);
   const ColmapProgram::Outcome outcome = Run(step, "mapper", arguments);
   const bool found_nothing =

@@ -2,13 +2,13 @@
 
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "nerf/scene/posed_images.h"
+#include "sfm/colmap_database.h"
 #include "sfm/colmap_images.h"
 #include "sfm/colmap_options.h"
 #include "sfm/colmap_program.h"
@@ -66,19 +66,17 @@ class ColmapSteps {
             const std::filesystem::path& result,
             const std::function<void(StepLedger::State)>& work);
   // Adds an option under the name that this version of COLMAP has for it; none where it has none.
-  void AddKnown(const std::string& command, std::initializer_list<const char*> names, int value,
-                Arguments& arguments);
-  void AddThreads(const std::string& command, std::initializer_list<const char*> names,
+  void AddKnown(const std::string& command, const std::vector<std::string>& names,
+                const std::string& value, Arguments& arguments);
+  void AddThreads(const std::string& command, const std::vector<std::string>& names,
                   Arguments& arguments);
   ColmapProgram::Outcome Run(const std::string& step, const std::string& command,
                              const Arguments& arguments) const;
   void RunOrThrow(const std::string& step, const std::string& command,
                   const Arguments& arguments) const;
   int FirstOctave() const;
-  Arguments MatchingArguments(const std::string& command, const std::filesystem::path& database);
-  void MatchExhaustively(const std::string& step);
-  void MatchSequentially();
-  void MatchGuided();
+  void MatchInParts(const std::string& step, const std::vector<ImagePair>& pairs,
+                    ColmapDatabase& database) const;
   void MapAgain(const std::string& step, const Arguments& thresholds);
   void RunMapper(const std::string& step, const std::filesystem::path& target,
                  const Arguments& thresholds);

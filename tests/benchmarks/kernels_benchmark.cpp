@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nerf/kernels/adam.h"
+#include "nerf/kernels/descriptor_matching.h"
 #include "nerf/kernels/hash_encoding_tile.h"
 #include "nerf/kernels/matrix_product.h"
 #include "nerf/kernels/mlp.h"
@@ -238,6 +239,22 @@ void SparseAdam(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kEntries));
 }
 BENCHMARK(SparseAdam)->Arg(1)->Arg(8)->Arg(64);
+
+// All descriptors of two photographs with each other, once, for both directions.
+void MatchDescriptors(benchmark::State& state) {
+  constexpr std::size_t kFeatures = 2048;
+  std::mt19937 generator(1);
+  std::vector<std::uint8_t> a(kFeatures * kDescriptorSize), b(a.size());
+  for (std::uint8_t& number : a) number = static_cast<std::uint8_t>(generator());
+  for (std::uint8_t& number : b) number = static_cast<std::uint8_t>(generator());
+  std::vector<NearestTwo> of_a(kFeatures), of_b(kFeatures);
+  for (auto _ : state) {
+    FindNearestTwo(a, b, of_a, of_b);
+    benchmark::ClobberMemory();
+  }
+  SetFlops(state, 2.0 * kFeatures * kFeatures * kDescriptorSize);
+}
+BENCHMARK(MatchDescriptors);
 
 }  // namespace
 }  // namespace nerf::kernels

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/colmap_database_file.h"
+#include "tests/support/feature_scene.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
 
@@ -13,85 +14,103 @@ namespace {
 using nerf::test::InputErrorOf;
 using nerf::test::ScratchFolder;
 using nerf::test::WriteColmapDatabase;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Pair;
+using testing::Not;
 
-TEST(CopyLargestFeatures, KeepsThemWithTheirDescriptorsAndRemovesMatches) {
-  const ScratchFolder folder;
-  const auto full = folder.path() / "full.db", coarse = folder.path() / "coarse.db";
-  WriteColmapDatabase(full, {{"a.jpg", {1, 5, 2, 4, 3}}, {"b.jpg", {7}}, {"c.jpg", {}}},
-                      {{0, 1, 40}});
-  CopyLargestFeatures(full, coarse, 3);
-  EXPECT_TRUE(ReadMatchedPairs(coarse).empty());
-  EXPECT_EQ(ReadMatchedPairs(full).size(), 1u);  // as it was
-  SQLite::Database read(coarse.string());
-  SQLite::Statement a(read,
-                      "SELECT keypoints.rows, keypoints.data, descriptors.rows, "
-                      "descriptors.data FROM keypoints JOIN descriptors USING (image_id) "
-                      "WHERE image_id = 1");
-  ASSERT_TRUE(a.executeStep());
-  EXPECT_EQ(a.getColumn(0).getInt(), 3);
-  EXPECT_EQ(a.getColumn(2).getInt(), 3);
-  const auto* keypoints = static_cast<const float*>(a.getColumn(1).getBlob());
-  const auto* descriptors = static_cast<const char*>(a.getColumn(3).getBlob());
-  ASSERT_EQ(a.getColumn(1).getBytes(), 3 * 6 * 4);
-  ASSERT_EQ(a.getColumn(3).getBytes(), 3 * 128);
-  const int kept[] = {1, 3, 4};
-  for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(keypoints[6 * k], static_cast<float>(kept[k]));
-    EXPECT_EQ(descriptors[128 * k + 127], kept[k]);
+class Database : public testing::Test {
+ protected:
+  Database() {
+    WriteColmapDatabase(path_,
+                        {{"b.jpg", scene_.features[0]}, {"a.jpg", scene_.features[1]}, {"c.jpg"}});
   }
-  EXPECT_EQ(read.execAndGet("SELECT rows FROM keypoints WHERE image_id = 2").getInt(), 1);
+  std::string ErrorOfReading() {
+    return InputErrorOf([&] { ColmapDatabase(path_).ReadFeatures(0); });
+  }
+  void Execute(const std::string& statement) {
+    SQLite::Database(path_.string(), SQLite::OPEN_READWRITE).exec(statement);
+  }
+
+  test::FeatureScene scene_ = test::FeatureScene({.images = 2, .points = 20});
+  ScratchFolder folder_;
+  std::filesystem::path path_ = folder_.path() / "d.db";
+};
+
+TEST_F(Database, ReadsFeaturesByName) {
+  const ColmapDatabase database(path_);
+  EXPECT_THAT(database.Names(), ElementsAre("a.jpg", "b.jpg", "c.jpg"));
+  const Features features = database.ReadFeatures(1);
+  EXPECT_EQ(features.positions, scene_.features[0].positions);
+  EXPECT_EQ(features.descriptors, scene_.features[0].descriptors);
+  for (int i = 0; i < features.Count(); ++i) {
+    EXPECT_FLOAT_EQ(features.scales[i], scene_.features[0].scales[i]);
+  }
+  EXPECT_EQ(database.ReadFeatures(2).Count(), 0);
 }
 
-TEST(CopyLargestFeatures, ADamagedDatabaseIsNamedWithTheFix) {
-  const ScratchFolder folder;
-  const auto full = folder.path() / "full.db";
-  folder.Write("full.db", "this is no database, but long enough to look at");
-  EXPECT_THAT(InputErrorOf([&] { CopyLargestFeatures(full, folder.path() / "coarse.db", 3); }),
-              testing::AllOf(HasSubstr("full.db"), HasSubstr("remove it")));
-  WriteColmapDatabase(full, {{"a.jpg", {1, 5, 2}}});
-  SQLite::Database(full.string(), SQLite::OPEN_READWRITE).exec("UPDATE keypoints SET rows = 900");
-  EXPECT_THAT(InputErrorOf([&] { CopyLargestFeatures(full, folder.path() / "coarse.db", 3); }),
-              HasSubstr("differ in number"));
+// COLMAP's order within a pair is that of its ids, which here is not that of the names.
+TEST_F(Database, KeepsMatchesInTheOrderOfColmap) {
+  ColmapDatabase database(path_);
+  const Eigen::Matrix3d fundamental = (Eigen::Matrix3d() << 0, 1, 2, 3, 4, 5, 6, 7, 8).finished();
+  database.Write(std::vector<PairMatches>{{{0, 1}, {{3, 5}, {4, 6}}, {{3, 5}}, fundamental},
+                                          {{1, 2}, {}, {}}});
+  EXPECT_THAT(database.MatchedPairs(), ElementsAre(ImagePair{0, 1}, ImagePair{1, 2}));
+  EXPECT_THAT(database.VerifiedPairs(), ElementsAre(std::pair(ImagePair{0, 1}, 1)));
+  EXPECT_THAT(database.ReadVerified({0, 1}), ElementsAre(FeatureMatch{3, 5}));
+  EXPECT_TRUE(database.ReadVerified({0, 2}).empty());
+  SQLite::Database file(path_.string());
+  // a.jpg has the id 2, b.jpg 3.
+  SQLite::Statement row(file,
+                        "SELECT pair_id, rows, cols, data, config, F FROM "
+                        "two_view_geometries WHERE rows > 0");
+  ASSERT_TRUE(row.executeStep());
+  EXPECT_EQ(row.getColumn(0).getInt64(), 2 * 2147483647LL + 3);
+  EXPECT_EQ(row.getColumn(2).getInt(), 2);
+  EXPECT_EQ(row.getColumn(4).getInt(), 3);
+  const auto* numbers = static_cast<const std::uint32_t*>(row.getColumn(3).getBlob());
+  EXPECT_EQ(numbers[0], 3u);
+  EXPECT_EQ(numbers[1], 5u);
+  const auto* by_rows = static_cast<const double*>(row.getColumn(5).getBlob());
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(by_rows[i], i);
 }
 
-// Computing features and matches takes hours, so the message must not suggest removing them.
-TEST(CopyLargestFeatures, ALockedDatabaseIsNotToBeRemoved) {
-  const ScratchFolder folder;
-  const auto full = folder.path() / "full.db";
-  WriteColmapDatabase(full, {{"a.jpg", {1, 5, 2}}});
-  SQLite::Database other(full.string(), SQLite::OPEN_READWRITE);
+TEST_F(Database, SwapsPairsWhoseIdsFall) {
+  WriteColmapDatabase(path_, {{"a.jpg", scene_.features[0]}, {"b.jpg", scene_.features[1]}});
+  ColmapDatabase database(path_);
+  const Eigen::Matrix3d fundamental = (Eigen::Matrix3d() << 0, 1, 2, 3, 4, 5, 6, 7, 8).finished();
+  database.Write(std::vector<PairMatches>{{{0, 1}, {{3, 5}}, {{3, 5}}, fundamental}});
+  EXPECT_THAT(database.ReadVerified({0, 1}), ElementsAre(FeatureMatch{3, 5}));
+  SQLite::Database file(path_.string());
+  SQLite::Statement row(file, "SELECT pair_id, data, F FROM two_view_geometries");
+  ASSERT_TRUE(row.executeStep());
+  EXPECT_EQ(row.getColumn(0).getInt64(), 1 * 2147483647LL + 2);
+  EXPECT_EQ(static_cast<const std::uint32_t*>(row.getColumn(1).getBlob())[0], 5u);
+  EXPECT_EQ(static_cast<const double*>(row.getColumn(2).getBlob())[1], 3);  // transposed
+}
+
+TEST_F(Database, ADamagedDatabaseIsNamedWithTheFix) {
+  Execute("UPDATE keypoints SET rows = 900");
+  EXPECT_THAT(ErrorOfReading(), AllOf(HasSubstr("d.db"), HasSubstr("remove it")));
+  WriteColmapDatabase(path_, {{"a.jpg", scene_.features[0]}});
+  Execute("UPDATE keypoints SET rows = rows - 1, data = substr(data, 1, length(data) - 24)");
+  EXPECT_THAT(ErrorOfReading(), HasSubstr("differ in number"));
+  folder_.Write("d.db", "this is no database, but long enough to look at");
+  EXPECT_THAT(ErrorOfReading(), AllOf(HasSubstr("d.db"), HasSubstr("remove it")));
+}
+
+TEST_F(Database, OtherFeaturesThanSiftAreNamed) {
+  Execute("UPDATE descriptors SET rows = rows * 2, cols = 64");
+  Execute("UPDATE keypoints SET rows = rows * 2, cols = 3");
+  EXPECT_THAT(ErrorOfReading(), HasSubstr("other than SIFT"));
+}
+
+// Computing features takes long, so the message must not suggest removing them.
+TEST_F(Database, ALockedDatabaseIsNotToBeRemoved) {
+  SQLite::Database other(path_.string(), SQLite::OPEN_READWRITE);
   other.exec("BEGIN EXCLUSIVE");
-  EXPECT_THAT(InputErrorOf([&] { CopyLargestFeatures(full, folder.path() / "coarse.db", 3); }),
-              testing::AllOf(HasSubstr("locked"), HasSubstr("run again"),
-                             testing::Not(HasSubstr("remove"))));
-}
-
-TEST(ReadMatchedPairs, ReturnsTheNamesOfThePhotographs) {
-  const ScratchFolder folder;
-  const auto path = folder.path() / "d.db";
-  WriteColmapDatabase(path, {{"b.jpg", {}}, {"a.jpg", {}}, {"c.jpg", {}}},
-                      {{0, 1, 40}, {1, 2, 0}, {0, 2, 15}});
-  const auto pairs = ReadMatchedPairs(path);
-  ASSERT_EQ(pairs.size(), 2u);
-  EXPECT_EQ(pairs[0].first + " " + pairs[0].second, "a.jpg b.jpg");
-  EXPECT_EQ(pairs[0].inliers, 40);
-  EXPECT_EQ(pairs[1].first + " " + pairs[1].second, "b.jpg c.jpg");
-  EXPECT_THAT(ReadImageNames(path), ElementsAre("a.jpg", "b.jpg", "c.jpg"));
-}
-
-TEST(SelectPairs, TakesTheBestOfEachPhotographAndItsNeighboursByName) {
-  const std::vector<std::string> names = {"d", "a", "c", "b"};
-  const std::vector<MatchedPair> pairs = {
-      {"a", "b", 10}, {"a", "c", 50}, {"a", "d", 40}, {"b", "c", 5}, {"b", "d", 30}};
-  EXPECT_THAT(SelectPairs(pairs, names, 1, 0),
-              ElementsAre(Pair("a", "c"), Pair("a", "d"), Pair("b", "d")));
-  EXPECT_THAT(SelectPairs(pairs, names, 0, 1),
-              ElementsAre(Pair("a", "b"), Pair("b", "c"), Pair("c", "d")));
-  EXPECT_EQ(SelectPairs(pairs, names, 9, 9).size(), 6u);
-  EXPECT_TRUE(SelectPairs({}, {}, 3, 3).empty());
+  EXPECT_THAT(ErrorOfReading(),
+              AllOf(HasSubstr("locked"), HasSubstr("run again"), Not(HasSubstr("remove"))));
 }
 
 }  // namespace

@@ -2,103 +2,127 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
+#include "sfm/colmap_program.h"
+#include "sfm/pair_selection.h"
 #include "tests/support/colmap_database_file.h"
 #include "tests/support/colmap_run.h"
+#include "tests/support/feature_scene.h"
 
 namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
-using nerf::test::WriteColmapDatabase;
 using nerf::test::WritePhoto;
-using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-class SequentialMatching : public nerf::test::ColmapRun {};
+class Matching : public nerf::test::ColmapRun {
+ protected:
+  // Photographs around one place, whose features the fake COLMAP finds.
+  void WriteScene(int count) {
+    WritePhotos(count);
+    const test::FeatureScene scene(
+        {.images = count, .points = 80, .opaque = true, .arc = 2 * std::numbers::pi / count});
+    std::vector<test::DatabaseImage> images;
+    for (int i = 0; i < count; ++i) {
+      images.push_back({fmt::format("p{:03}.png", i), scene.features[i]});
+    }
+    fake_.SetFeatures(images);
+    fake_.Set("models", fmt::format("0 {}\n", count));
+  }
+  ColmapDatabase Matched() const { return ColmapDatabase(Workspace() / "database.db"); }
+};
 
-TEST_F(SequentialMatching, ManyNumberedPhotosAreMatchedInSequence) {
+TEST_F(Matching, ManyNumberedPhotosAreMatchedInSequence) {
   for (int i = 0; i < 101; ++i) {
     WritePhoto(photos_.path() / fmt::format("p{:03}.png", i), 16, 12);
   }
+  std::vector<test::DatabaseImage> images;
+  for (int i = 0; i < 101; ++i) images.push_back({fmt::format("p{:03}.png", i)});
+  fake_.SetFeatures(images);
   fake_.Set("size", "16 12");
   fake_.Set("models", "0 101\n");
   Run();
-  EXPECT_THAT(fake_.Calls()[1],
-              AllOf(HasSubstr("sequential_matcher"), HasSubstr("--SequentialMatching.overlap 20")));
+  const auto pairs = Matched().MatchedPairs();
+  EXPECT_EQ(std::vector(pairs.begin(), pairs.end()), SequentialPairs(101, 20));
 }
 
-// From COLMAP 3.11 on, pairs at quadratic distances are matched instead of neighbours.
-TEST_F(SequentialMatching, NeighboursAndQuadraticDistancesAreTwoPasses) {
-  WritePhotos(6);
-  fake_.Set("help",
-            "--FeatureMatching.use_gpu arg\n--SequentialMatching.overlap arg\n"
-            "--SequentialMatching.quadratic_overlap arg\n");
-  fake_.Set("models", "0 6\n");
-  options_.matcher = "sequential";
+TEST_F(Matching, FewPhotosAreAllMatched) {
+  WriteScene(6);
   Run();
-  EXPECT_THAT(fake_.Calls()[1], HasSubstr("--SequentialMatching.quadratic_overlap 0"));
-  EXPECT_THAT(fake_.Calls()[2], HasSubstr("--SequentialMatching.quadratic_overlap 1"));
+  EXPECT_EQ(Matched().MatchedPairs().size(), 15u);
+  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "mapper"));
 }
 
-class GuidedMatching : public nerf::test::ColmapRun {
- protected:
-  // The matches of the fake COLMAP: none but between the first and the last.
-  void FindFeatures(int count) {
-    std::vector<nerf::test::DatabaseImage> images;
-    for (int i = 0; i < count; ++i) images.push_back({fmt::format("p{:03}.png", i), {1, 2, 3}});
-    WriteColmapDatabase(out_.path() / "prepared.db", images, {{0, count - 1, 90}});
-    const std::string prepared = (out_.path() / "prepared.db").string();
-    fake_.Set("do_feature_extractor", "cp '" + prepared + "' \"$database\"\n");
-    // Coarse matches are written to the copy, from which those of the original were removed.
-    fake_.Set("do_exhaustive_matcher", "cp '" + prepared + "' \"$database\"\n");
-    fake_.Set("do_matches_importer",
-              "cat \"$(dirname \"$database\")/pairs.txt\" >> \"$here/pairs\"\n");
-  }
-};
-
-TEST_F(GuidedMatching, MatchesTheMostSimilarPairsAndNeighbours) {
-  WritePhotos(30);
-  fake_.Set("models", "0 30\n");
-  FindFeatures(30);
+TEST_F(Matching, GuidedTakesTheMostSimilarPairsAndNeighbours) {
+  WriteScene(30);
   Run();
-  std::vector<std::string> commands = fake_.Commands();
-  commands.erase(std::unique(commands.begin(), commands.end()), commands.end());
-  EXPECT_THAT(commands,
-              ElementsAre("feature_extractor", "exhaustive_matcher", "matches_importer", "mapper"));
-  EXPECT_THAT(fake_.Calls()[1], HasSubstr("coarse.db"));
-  const std::string pairs = fake_.Get("pairs");
-  EXPECT_EQ(std::ranges::count(pairs, '\n'), 29 + 28 + 1);
-  EXPECT_THAT(pairs, AllOf(HasSubstr("p000.png p029.png\n"), HasSubstr("p010.png p012.png\n"),
-                           Not(HasSubstr("p010.png p013.png\n"))));
-  EXPECT_FALSE(fs::exists(Workspace() / "coarse.db"));
-  EXPECT_FALSE(fs::exists(Workspace() / "pairs.txt"));
+  const auto pairs = Matched().MatchedPairs();
+  EXPECT_LT(pairs.size(), 30u * 29 / 2);
+  EXPECT_TRUE(pairs.contains({0, 1}));
+  EXPECT_TRUE(pairs.contains({0, 29}));  // neighbours around the place, not by name
+  EXPECT_FALSE(pairs.contains({0, 15}));
+  EXPECT_GE(Matched().VerifiedPairs().size(), 100u);
 }
 
-TEST_F(GuidedMatching, MatchesAllPairsWhereTooFewPhotosAreRegistered) {
-  WritePhotos(30);
+TEST_F(Matching, AllPairsFollowWhereTooFewPhotosAreRegistered) {
+  WriteScene(30);
   fake_.Set("models", "0 20\n");
-  FindFeatures(30);
   Run();
   EXPECT_THAT(log_.Text(), HasSubstr("20 of 30 registered; matching the remaining pairs"));
-  EXPECT_EQ(fake_.Commands().back(), "mapper");
-  EXPECT_THAT(fake_.Calls()[fake_.Calls().size() - 2],
-              AllOf(HasSubstr("exhaustive_matcher"), HasSubstr("database.db")));
+  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "mapper", "mapper"));
+  EXPECT_EQ(Matched().MatchedPairs().size(), 30u * 29 / 2);
   fake_.ForgetCalls();
   Run();
   EXPECT_THAT(fake_.Commands(), IsEmpty());
 }
 
-TEST_F(GuidedMatching, ListsCannotContainNamesWithSpaces) {
-  WritePhotos(30);
+// Names with spaces, which COLMAP's own lists of pairs cannot have.
+TEST_F(Matching, NamesMayContainSpaces) {
+  WriteScene(30);
   fs::rename(photos_.path() / "p007.png", photos_.path() / "p 007.png");
-  fake_.Set("models", "0 30\n");
   Run();
-  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "exhaustive_matcher", "mapper"));
-  EXPECT_THAT(log_.Text(), HasSubstr("p 007.png: guided matching"));
+  EXPECT_THAT(log_.Text(), Not(HasSubstr("warning")));
+}
+
+// The matcher of the installed COLMAP searches approximately, so that it misses few.
+TEST(MatchingForReal, FindsTheMatchesOfColmap) {
+  const test::ScratchFolder photos, out;
+  const std::vector<std::string> names = {"0001.jpg", "0002.jpg", "0004.jpg", "0006.jpg"};
+  for (const std::string& name : names) {
+    fs::create_symlink(fs::absolute(fs::path(NERF_TEST_DATA) / "fox/images" / name),
+                       photos.path() / name);
+  }
+  ColmapOptions options;
+  options.max_image_size = 640;
+  PosesFromPhotos(photos.path(), out.path(), options);
+  const fs::path ours = out.path() / "database.db", theirs = out.path() / "theirs.db";
+  fs::copy_file(ours, theirs);
+  ColmapDatabase(theirs).RemoveMatches();
+  ColmapProgram colmap = ColmapProgram::Find();
+  std::vector<std::string> arguments = {"--database_path", theirs.string()};
+  const std::string gpu =
+      colmap.KnownOption("exhaustive_matcher", {"SiftMatching.use_gpu", "FeatureMatching.use_gpu"});
+  arguments.insert(arguments.end(), {"--" + gpu, "0"});
+  ASSERT_EQ(
+      colmap.Run("exhaustive_matcher", arguments, out.path() / "log.txt", [](auto) {}).exit_code,
+      0);
+  std::size_t of_ours = 0, of_theirs = 0, both = 0;
+  const ColmapDatabase our_database(ours), their_database(theirs);
+  for (const ImagePair& pair : AllPairs(static_cast<int>(names.size()))) {
+    const auto a = our_database.ReadMatches(pair), b = their_database.ReadMatches(pair);
+    of_ours += a.size();
+    of_theirs += b.size();
+    both += std::ranges::count_if(
+        a, [&](const FeatureMatch& match) { return std::ranges::count(b, match) > 0; });
+  }
+  EXPECT_GT(of_ours, 1000u);
+  EXPECT_GE(both, 0.97 * of_ours);
+  EXPECT_GE(both, 0.97 * of_theirs);
 }
 
 TEST(NumberedSequence, IsOneTextAroundNumbersOfOneWidth) {

@@ -76,7 +76,8 @@ TEST_F(ColmapProgramTest, BothStreamsAreReadAndLoggedAndThereIsNoDisplay) {
   const auto outcome = RunMapper("echo one; echo two >&2; echo $QT_QPA_PLATFORM $TMPDIR");
   EXPECT_EQ(outcome.exit_code, 0);
   // Nothing is written outside the workspace.
-  EXPECT_THAT(heard_, testing::ElementsAre("one", "two", "offscreen " + Log().parent_path().string()));
+  EXPECT_THAT(heard_,
+              testing::ElementsAre("one", "two", "offscreen " + Log().parent_path().string()));
   EXPECT_THAT(FileBytes(Log()), AllOf(HasSubstr("mapper --x 1\n"), HasSubstr("one\ntwo\n")));
 }
 

@@ -27,7 +27,7 @@ TEST_F(ColmapRunner, EachStepRunsOnceAndTheImagesAreTheOriginals) {
   WritePhotos(6);
   fake_.Set("models", "0 6\n");
   const PosedImages posed = Run();
-  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "exhaustive_matcher", "mapper"));
+  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "mapper"));
   ASSERT_EQ(posed.images.size(), 6u);
   EXPECT_EQ(posed.images[2].name, "p002.png");
   EXPECT_EQ(posed.images[2].path, photos_.path() / "p002.png");
@@ -52,7 +52,9 @@ TEST_F(ColmapRunner, OptionsReachThePrograms) {
                     HasSubstr("--ImageReader.single_camera_per_folder 1"),
                     HasSubstr("--SiftExtraction.use_gpu 0"),
                     HasSubstr("--SiftExtraction.max_image_size 700"), Not(HasSubstr("threads"))));
-  EXPECT_THAT(fake_.Calls()[1], HasSubstr("--SiftMatching.use_gpu 0"));
+  // What this version knows, and nothing else.
+  EXPECT_THAT(fake_.Calls()[1], AllOf(HasSubstr("--Mapper.ba_global_images_ratio 1.4"),
+                                      Not(HasSubstr("points_ratio"))));
 }
 
 TEST_F(ColmapRunner, SmallPhotosAreEnlargedForFeatures) {
@@ -71,8 +73,8 @@ TEST_F(ColmapRunner, NewerProgramsGetTheNewOptionNames) {
   WritePhotos(6);
   fake_.Set("models", "0 6\n");
   fake_.Set("help",
-            "--FeatureExtraction.use_gpu arg\n--FeatureMatching.use_gpu arg\n"
-            "--FeatureExtraction.num_threads arg\n--FeatureMatching.num_threads arg\n");
+            "--FeatureExtraction.use_gpu arg\n--FeatureExtraction.num_threads arg\n"
+            "--Mapper.ba_global_frames_ratio arg\n--Mapper.num_threads arg\n");
   fake_.Set("version", "COLMAP 4.0.1 (Commit)\n");
   options_.threads = 3;
   EXPECT_EQ(Run().images.size(), 6u);
@@ -81,20 +83,20 @@ TEST_F(ColmapRunner, NewerProgramsGetTheNewOptionNames) {
   EXPECT_THAT(fake_.Calls()[0], AllOf(HasSubstr("--FeatureExtraction.use_gpu 0"),
                                       HasSubstr("--FeatureExtraction.num_threads 3"),
                                       Not(HasSubstr("SiftExtraction"))));
-  EXPECT_THAT(fake_.Calls()[1], AllOf(HasSubstr("--FeatureMatching.use_gpu 0"),
-                                      HasSubstr("--FeatureMatching.num_threads 3")));
+  EXPECT_THAT(fake_.Calls()[1], AllOf(HasSubstr("--Mapper.ba_global_frames_ratio 1.4"),
+                                      HasSubstr("--Mapper.num_threads 3")));
 }
 
 TEST_F(ColmapRunner, FailingStepIsNamedWithReasonAndLogAndRunsAgainNextTime) {
   WritePhotos(6);
   fake_.Set("models", "0 6\n");
-  fake_.Set("do_exhaustive_matcher", "echo 'ERROR: disk I/O error'; exit 1");
-  EXPECT_THAT(Error(), AllOf(HasSubstr("colmap exhaustive_matcher failed"),
-                             HasSubstr("disk I/O error"), HasSubstr("log/matches.log")));
-  fake_.Unset("do_exhaustive_matcher");
+  fake_.Set("do_feature_extractor", "echo 'ERROR: disk I/O error'; exit 1");
+  EXPECT_THAT(Error(), AllOf(HasSubstr("colmap feature_extractor failed"),
+                             HasSubstr("disk I/O error"), HasSubstr("log/features.log")));
+  fake_.Unset("do_feature_extractor");
   fake_.ForgetCalls();
   Run();
-  EXPECT_THAT(fake_.Commands(), ElementsAre("exhaustive_matcher", "mapper"));
+  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "mapper"));
 }
 
 TEST_F(ColmapRunner, FewRegisteredAreMappedAgainThenRefusedWithAdvice) {
@@ -164,12 +166,11 @@ TEST_F(ColmapRunner, ChangesRepeatTheStepsThatDependOnThem) {
     Run();
     return fake_.Commands();
   };
-  EXPECT_THAT(commands_after([&] { options_.matcher = "sequential"; }),
-              ElementsAre("database_cleaner", "sequential_matcher", "mapper"));
+  EXPECT_THAT(commands_after([&] { options_.matcher = "sequential"; }), ElementsAre("mapper"));
   EXPECT_THAT(commands_after([&] { options_.max_num_features = 500; }),
-              ElementsAre("feature_extractor", "sequential_matcher", "mapper"));
+              ElementsAre("feature_extractor", "mapper"));
   EXPECT_THAT(commands_after([&] { WritePhoto(photos_.path() / "q.png", 64, 48); }),
-              ElementsAre("feature_extractor", "sequential_matcher", "mapper"));
+              ElementsAre("feature_extractor", "mapper"));
   EXPECT_TRUE(fs::exists(Workspace() / "images/q.png"));
   EXPECT_THAT(commands_after([&] { fs::remove(photos_.path() / "q.png"); }),
               Contains("feature_extractor"));

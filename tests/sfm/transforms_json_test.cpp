@@ -13,8 +13,8 @@ namespace nerf::sfm {
 namespace {
 
 namespace fs = std::filesystem;
-using nerf::test::InputErrorOf;
 using nerf::test::Frame;
+using nerf::test::InputErrorOf;
 using nerf::test::ScratchFolder;
 using nerf::test::TransformsJson;
 using nerf::test::TwoFrames;

@@ -6,66 +6,65 @@
 #include <string>
 #include <vector>
 
+#include "nerf/kernels/descriptor_matching.h"
+#include "sfm/feature_matching.h"
+
 namespace nerf::test {
 
-// An image of a COLMAP database, with keypoints of the given scales and descriptors that contain
-// the index of their keypoint.
 struct DatabaseImage {
   std::string name;
-  std::vector<float> scales;
+  sfm::Features features = {};
 };
 
-// Two images, by index, and the number of inlier matches between them.
-struct DatabasePair {
-  int first = 0, second = 0;
-  int inliers = 0;
-};
-
-// Writes a database with the tables and columns of COLMAP 3.8 that the project reads.
+// Writes a database as COLMAP 3.8 has it after feature extraction. The ids of the images fall, so
+// that the order by name and that by id differ if the names are sorted.
 inline void WriteColmapDatabase(const std::filesystem::path& path,
-                                const std::vector<DatabaseImage>& images,
-                                const std::vector<DatabasePair>& pairs = {}) {
+                                const std::vector<DatabaseImage>& images) {
   std::filesystem::remove(path);
   SQLite::Database database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  database.exec("CREATE TABLE images (image_id INTEGER PRIMARY KEY, name TEXT)");
-  database.exec("CREATE TABLE matches (pair_id INTEGER PRIMARY KEY, rows INTEGER)");
-  database.exec("CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY, rows INTEGER)");
+  SQLite::Transaction transaction(database);
+  database.exec(
+      "CREATE TABLE images (image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT "
+      "NULL UNIQUE, camera_id INTEGER NOT NULL)");
+  database.exec(
+      "CREATE TABLE matches (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL, cols "
+      "INTEGER NOT NULL, data BLOB)");
+  database.exec(
+      "CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT "
+      "NULL, cols INTEGER NOT NULL, data BLOB, config INTEGER NOT NULL, F BLOB, E BLOB, H BLOB, "
+      "qvec BLOB, tvec BLOB)");
   for (const char* table : {"keypoints", "descriptors"}) {
     database.exec("CREATE TABLE " + std::string(table) +
                   " (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB)");
   }
-  const auto insert = [&](const char* table, int image, std::size_t rows, int columns,
-                          const void* data, std::size_t bytes) {
+  const auto insert = [&](const char* table, int image, int rows, int columns, const void* data,
+                          std::size_t bytes) {
     SQLite::Statement row(database, "INSERT INTO " + std::string(table) + " VALUES (?, ?, ?, ?)");
     row.bind(1, image);
-    row.bind(2, static_cast<int>(rows));
+    row.bind(2, rows);
     row.bind(3, columns);
     row.bind(4, data, static_cast<int>(bytes));
     row.exec();
   };
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const int id = static_cast<int>(i) + 1;
-    SQLite::Statement row(database, "INSERT INTO images VALUES (?, ?)");
+    const int id = static_cast<int>(images.size() - i);
+    const sfm::Features& features = images[i].features;
+    SQLite::Statement row(database, "INSERT INTO images VALUES (?, ?, 1)");
     row.bind(1, id);
     row.bind(2, images[i].name);
     row.exec();
     std::vector<float> keypoints;
-    std::string descriptors;
-    for (std::size_t k = 0; k < images[i].scales.size(); ++k) {
-      const float scale = images[i].scales[k];
-      keypoints.insert(keypoints.end(), {static_cast<float>(k), 0, 0, -scale, scale, 0});
-      descriptors += std::string(128, static_cast<char>(k));
+    for (int k = 0; k < features.Count(); ++k) {
+      const float scale = features.scales[k];
+      keypoints.insert(keypoints.end(),
+                       {features.positions[k].x(), features.positions[k].y(), 0, -scale, scale, 0});
     }
-    insert("keypoints", id, images[i].scales.size(), 6, keypoints.data(),
+    insert("keypoints", id, features.Count(), 6, keypoints.data(),
            keypoints.size() * sizeof(float));
-    insert("descriptors", id, images[i].scales.size(), 128, descriptors.data(), descriptors.size());
+    insert("descriptors", id, features.Count(), kernels::kDescriptorSize,
+           features.descriptors.data(), features.descriptors.size());
   }
-  for (const DatabasePair& pair : pairs) {
-    SQLite::Statement row(database, "INSERT INTO two_view_geometries VALUES (?, ?)");
-    row.bind(1, (pair.first + 1) * std::int64_t{2147483647} + pair.second + 1);
-    row.bind(2, pair.inliers);
-    row.exec();
-  }
+  transaction.commit();
 }
 
 }  // namespace nerf::test

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/colmap_database_file.h"
 #include "tests/support/scratch_folder.h"
 
 namespace nerf::test {
@@ -18,6 +19,7 @@ namespace nerf::test {
 //   models             models that `mapper` writes, one per line: number and count of images
 //   models_relaxed     the same for the call with lower thresholds
 //   do_COMMAND         shell commands to run instead
+//   features.db        the database that `feature_extractor` writes; it has no photographs
 //   size               width and height of images that are not in a folder named by their size
 class FakeColmap {
  public:
@@ -27,12 +29,12 @@ class FakeColmap {
     Set("help",
         "--SiftExtraction.use_gpu arg\n--SiftExtraction.max_image_size arg\n"
         "--SiftExtraction.first_octave arg\n"
-        "--SiftMatching.use_gpu arg\n--ExhaustiveMatching.block_size arg\n"
-        "--SequentialMatching.overlap arg\n");
+        "--Mapper.ba_global_images_ratio arg\n");
     Set("version", "COLMAP 3.8 -- Structure-from-Motion and Multi-View Stereo\n");
     Set("models", "");
     Set("models_relaxed", "");
     Set("size", "64 48");
+    WriteColmapDatabase(folder_.path() / "features.db", {});
     setenv("PATH", (folder_.path().string() + ":" + old_path_).c_str(), 1);
   }
   ~FakeColmap() { setenv("PATH", old_path_.c_str(), 1); }
@@ -43,6 +45,10 @@ class FakeColmap {
     std::stringstream text;
     text << stream.rdbuf();
     return text.str();
+  }
+  // What `feature_extractor` finds.
+  void SetFeatures(const std::vector<DatabaseImage>& images) const {
+    WriteColmapDatabase(folder_.path() / "features.db", images);
   }
   void Unset(const std::string& file) const { std::filesystem::remove(folder_.path() / file); }
 
@@ -80,8 +86,7 @@ while [ $# -gt 1 ]; do
 done
 if [ -f "$here/do_$command" ]; then . "$here/do_$command"; exit; fi
 case $command in
-  feature_extractor) echo 'Processed file [1/1]'; : > "$database";;
-  *_matcher) echo 'Matching block [1/1, 1/1] in 0.1s';;
+  feature_extractor) echo 'Processed file [1/1]'; cp "$here/features.db" "$database";;
 esac
 [ $command = mapper ] || exit 0
 read width height < "$here/size"

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "nerf/effects/effects.h"
+#include "nerf/inspect/verdict.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {
