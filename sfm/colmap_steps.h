@@ -50,6 +50,7 @@ class ColmapSteps {
   // The largest model. Throws InputError where there is none.
   PosedImages ReadModel() const;
 
+  std::filesystem::path Database() const { return workspace_ / "database.db"; }
   std::filesystem::path LogFile(const std::string& step) const;
   // The seconds that each step took; for a skipped step those of the call that executed it.
   const std::vector<std::pair<std::string, double>>& Seconds() const { return seconds_; }
@@ -58,7 +59,6 @@ class ColmapSteps {
   using Arguments = std::vector<std::string>;
 
   std::filesystem::path Images() const { return workspace_ / "images"; }
-  std::filesystem::path Database() const { return workspace_ / "database.db"; }
   std::filesystem::path Sparse() const { return workspace_ / "sparse"; }
 
   // Calls work(state) unless the step was finished from the same inputs and its result exists.

@@ -13,8 +13,11 @@
 #include "nerf/commands/commands.h"
 #include "nerf/commands/training_display.h"
 #include "sfm/colmap_runner.h"
+#include "sfm/colmap_text_writer.h"
 #include "sfm/film.h"
+#include "sfm/masks.h"
 #include "sfm/pose_input.h"
+#include "sfm/sparse_points.h"
 #include "sfm/transforms_json.h"
 
 namespace nerf {
@@ -26,6 +29,7 @@ struct PosesArguments {
   std::string folder;
   std::string output;
   int frames = 0;
+  bool keep_poses = false;
   sfm::ColmapOptions colmap;
 };
 
@@ -51,6 +55,37 @@ void PrintReport(const sfm::ColmapReport& report, const fs::path& transforms) {
   row("poses", transforms.string());
 }
 
+// The photographs of a model by the names that it has: a link to their folder.
+void LinkImages(const PosedImages& posed, const fs::path& link) {
+  const fs::path root = RootOf(posed.images.front());
+  for (const PosedImage& image : posed.images) {
+    if (RootOf(image) == root) continue;
+    throw InputError("{}: its photographs are in several folders, {} and {}; put them into one",
+                     posed.source.string(), root.string(), RootOf(image).string());
+  }
+  std::error_code error;
+  if (fs::is_symlink(link)) fs::remove(link, error);
+  fs::create_directory_symlink(fs::absolute(root), link, error);
+  if (error) throw InputError("{}: cannot be made: {}", link.string(), error.message());
+}
+
+// Finds sparse points for poses that are given.
+void KeepPoses(const PosesArguments& arguments, const fs::path& output) {
+  PosedImages posed = sfm::ReadPosedInput(sfm::FindInput(arguments.folder));
+  for (const std::string& warning : posed.warnings) spdlog::warn("{}", warning);
+  sfm::FindMasks(posed);
+  const fs::path workspace = output / "points", model = output / "sparse" / "0";
+  const sfm::SparsePointReport report = sfm::FindSparsePoints(posed, workspace, arguments.colmap);
+  if (report.consistency.Contradicts()) {
+    throw InputError("{}: {}", posed.source.string(), sfm::Describe(report.consistency));
+  }
+  MakeOutputFolder(model);
+  LinkImages(posed, output / "images");
+  sfm::WriteColmapText(posed, model);
+  fmt::print("{}\n{}\n{:<26}{}\n", sfm::Describe(report.consistency), sfm::Describe(report),
+             "poses and points", output.string());
+}
+
 void RunPoses(const PosesArguments& arguments) {
   fs::path folder = fs::absolute(arguments.folder).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // a trailing slash
@@ -59,6 +94,7 @@ void RunPoses(const PosesArguments& arguments) {
   const fs::path output = arguments.output.empty()
                               ? fs::path("runs") / (folder.filename().string() + "-poses")
                               : fs::path(arguments.output);
+  if (arguments.keep_poses) return KeepPoses(arguments, output);
   const fs::path transforms = output / "transforms.json";
   const fs::path workspace = output / "colmap";
   if (fs::exists(transforms) && !fs::exists(workspace / "steps.json")) {
@@ -89,7 +125,10 @@ void AddPosesCommand(CLI::App& app) {
       app.add_subcommand("poses", "Finds the camera poses of a folder of photographs, with COLMAP");
   const auto arguments = std::make_shared<PosesArguments>();
   sfm::ColmapOptions& colmap = arguments->colmap;
-  command->add_option("INPUT", arguments->folder, "Folder of photographs, or a film")->required();
+  command
+      ->add_option("INPUT", arguments->folder,
+                   "Folder of photographs, or a film; with --keep-poses what nerf train reads")
+      ->required();
   command->add_option("-o,--output", arguments->output,
                       "Folder for transforms.json and colmap/; default: runs/<name>-poses");
   command
@@ -112,6 +151,10 @@ void AddPosesCommand(CLI::App& app) {
                    "Frames to use of a film; 0: three a second, 40 to 150")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
+  command->add_flag(
+      "--keep-poses", arguments->keep_poses,
+      "INPUT has poses (transforms.json, COLMAP, LLFF): keep them, compare them with\n"
+      "the photographs, and find sparse points");
   command->add_option("--threads", colmap.threads, "Threads; 0: all cores")->capture_default_str();
   command->footer(
       "After an interruption, run it again to continue; finished steps are skipped.\n"
@@ -119,6 +162,7 @@ void AddPosesCommand(CLI::App& app) {
       "  nerf poses photos/fox\n"
       "  nerf poses photos/fox -o fox-poses --max-image-size 3200\n"
       "  nerf poses clip.mp4 --frames 120\n"
+      "  nerf poses scene/transforms.json --keep-poses -o scene-points\n"
       "  nerf poses frames --matcher sequential --camera-model OPENCV_FISHEYE");
   command->callback([arguments] { RunPoses(*arguments); });
 }
