@@ -77,10 +77,18 @@ std::vector<Mistake> KnownMistakes(const std::vector<Isometry3d>& poses) {
   const int count = static_cast<int>(poses.size());
   const auto given = [&poses](int i) { return poses[i]; };
   std::vector<Mistake> mistakes;
-  mistakes.push_back(
-      {"the matrices are world-to-camera where camera-to-world is expected, or the "
-       "other way round",
-       [&poses](int i) { return poses[i].inverse(); }});
+  // The axes of cameras were perhaps converted after it.
+  const Eigen::DiagonalMatrix<double, 3> turned(1, -1, -1);
+  for (const bool is_turned : {false, true}) {
+    mistakes.push_back(
+        {"the matrices are world-to-camera where camera-to-world is expected, or the "
+         "other way round",
+         [&poses, turned, is_turned](int i) {
+           Isometry3d pose = poses[i].inverse();
+           if (is_turned) pose.linear() = pose.linear() * turned;
+           return pose;
+         }});
+  }
   const auto add_axes = [&](const std::string& text, double x, double y, double z) {
     mistakes.push_back({text, given, Vector3d(x, y, z)});
   };
@@ -98,7 +106,8 @@ std::vector<Mistake> KnownMistakes(const std::vector<Isometry3d>& poses) {
                           return pose;
                         }});
   }
-  for (const double factor : {0.5, 0.6, 0.7, 0.8, 0.9, 1.1, 1.2, 1.35, 1.5, 1.75, 2.0}) {
+  for (double factor = 0.5; factor <= 2; factor *= 1.025) {
+    if (std::fabs(factor - 1) < 0.02) continue;
     mistakes.push_back(
         {fmt::format("the focal length is {:.0f} % of what it should be", 100 / factor), given,
          Vector3d(1 / factor, 1 / factor, 1)});
@@ -115,7 +124,7 @@ std::vector<Mistake> KnownMistakes(const std::vector<Isometry3d>& poses) {
 
 }  // namespace
 
-bool PoseConsistency::Contradicts() const { return share < kContradicts || !looks_like.empty(); }
+bool PoseConsistency::Contradicts() const { return share < kContradicts; }
 
 std::string Describe(const PoseConsistency& consistency) {
   if (std::isnan(consistency.share)) {
@@ -123,14 +132,12 @@ std::string Describe(const PoseConsistency& consistency) {
   }
   std::string text = fmt::format("{:.0f} % of the matches between photographs fit the poses",
                                  100 * consistency.share);
-  if (!consistency.Contradicts()) return text;
-  text += "; it looks as if ";
-  if (consistency.looks_like.empty()) return text + "the poses are wrong";
-  text += consistency.looks_like;
-  if (consistency.share_then > kContradicts) {
-    text += fmt::format(" ({:.0f} % would fit then)", 100 * consistency.share_then);
+  if (!consistency.IsDoubtful()) return text;
+  if (consistency.looks_like.empty()) {
+    return text + "; names and poses do not belong together (shuffled), or many poses are wrong";
   }
-  return text;
+  return text + fmt::format("; it looks as if {}: {:.0f} % would fit then", consistency.looks_like,
+                            100 * consistency.share_then);
 }
 
 PoseConsistency CheckPoses(const PosedImages& posed, std::span<const SeenTwice> matches) {
@@ -151,12 +158,7 @@ PoseConsistency CheckPoses(const PosedImages& posed, std::span<const SeenTwice> 
     result.looks_like = mistake.text;
   }
   // Whatever explains much of what does not fit. Lenses that are a little wrong are no mistake.
-  if (1 - result.share_then > (1 - result.share) / 2) {
-    result.looks_like.clear();
-    if (result.share < kContradicts) {
-      result.looks_like = "names and poses do not belong together (shuffled), or many are wrong";
-    }
-  }
+  if (1 - result.share_then > (1 - result.share) / 2) result.looks_like.clear();
   return result;
 }
 

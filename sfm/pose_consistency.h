@@ -28,7 +28,10 @@ struct PoseConsistency {
   std::string looks_like;
   double share_then = 0;
 
+  // The poses are useless as they are.
   bool Contradicts() const;
+  // Worth a warning: they are, or a known mistake explains what does not fit.
+  bool IsDoubtful() const { return Contradicts() || !looks_like.empty(); }
 };
 
 // Compares the poses with matches, and where they do not fit, tries common mistakes: poses
