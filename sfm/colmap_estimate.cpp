@@ -21,26 +21,40 @@ constexpr double kGrowth = 0.7;
 constexpr double kCoarseCost = (512 / kUsualFeatures) * (512 / kUsualFeatures);
 constexpr int kPartners = 12, kPairsInSequence = 25, kExhaustiveMost = 20;
 
+double MegapixelsOf(int longest_side, const ColmapOptions& options) {
+  const double side = std::min(longest_side, options.max_image_size);
+  return 0.75 * side * side * 1e-6;
+}
+
+double FeaturesOf(int longest_side, const ColmapOptions& options) {
+  return options.max_num_features *
+         std::min(1.0, std::sqrt(MegapixelsOf(longest_side, options) / kFullMegapixels));
+}
+
 }  // namespace
 
-double EstimatePoseSeconds(int photographs, int longest_side, const ColmapOptions& options,
-                           int threads) {
+double EstimatePointSeconds(int photographs, int longest_side, const ColmapOptions& options,
+                            int threads) {
   const double count = photographs, pairs = count * (count - 1) / 2;
-  const double side = std::min(longest_side, options.max_image_size);
-  const double megapixels = 0.75 * side * side * 1e-6;
+  const double megapixels = MegapixelsOf(longest_side, options);
   double matched = pairs;
   if (options.matcher == "sequential") {
     matched = std::min(pairs, kPairsInSequence * count);
   } else if (options.matcher != "exhaustive" && photographs > kExhaustiveMost) {
     matched = kCoarseCost * pairs + std::min(pairs, kPartners * count);
   }
-  const double features =
-      options.max_num_features * std::min(1.0, std::sqrt(megapixels / kFullMegapixels));
+  const double features = FeaturesOf(longest_side, options);
   const double per_pair = kMatchPerPair * std::pow(features / kUsualFeatures, 2);
-  const double searched = megapixels * (side < kEnlarged ? 4 : 1);
-  const double parallel = kFeaturesPerMegapixel * searched * count + per_pair * matched;
-  return parallel / std::max(1, threads) +
-         kMapping * features / kUsualFeatures * count *
+  const bool is_enlarged = std::min(longest_side, options.max_image_size) < kEnlarged;
+  const double searched = megapixels * (is_enlarged ? 4 : 1);
+  return (kFeaturesPerMegapixel * searched * count + per_pair * matched) / std::max(1, threads);
+}
+
+double EstimatePoseSeconds(int photographs, int longest_side, const ColmapOptions& options,
+                           int threads) {
+  const double count = photographs;
+  return EstimatePointSeconds(photographs, longest_side, options, threads) +
+         kMapping * FeaturesOf(longest_side, options) / kUsualFeatures * count *
              std::pow(std::max(1.0, count / kManyPhotographs), kGrowth);
 }
 

@@ -10,4 +10,8 @@ namespace nerf::sfm {
 double EstimatePoseSeconds(int photographs, int longest_side, const ColmapOptions& options,
                            int threads);
 
+// The same for FindSparsePoints.
+double EstimatePointSeconds(int photographs, int longest_side, const ColmapOptions& options,
+                            int threads);
+
 }  // namespace nerf::sfm

@@ -7,12 +7,15 @@
 #include <unordered_map>
 #include <utility>
 
+#include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "nerf/image/image_files.h"
 #include "nerf/scene/camera_intrinsics.h"
 #include "sfm/colmap_records.h"
 
 namespace fs = std::filesystem;
+
+constexpr const char* kChosen = "chosen.txt";
 
 namespace nerf::sfm {
 namespace {
@@ -257,6 +260,20 @@ std::vector<fs::path> SubModels(const fs::path& sparse_folder) {
   std::vector<fs::path> folders;
   for (auto& [number, folder] : by_number) folders.push_back(std::move(folder));
   return folders;
+}
+
+void ChooseModel(const fs::path& sparse_folder, const fs::path& model) {
+  WriteFileAtomically(sparse_folder / kChosen,
+                      fs::relative(model, sparse_folder).generic_string() + "\n");
+}
+
+std::optional<fs::path> ChosenModel(const fs::path& sparse_folder) {
+  const fs::path file = sparse_folder / kChosen;
+  if (!fs::is_regular_file(file)) return std::nullopt;
+  std::string line = ReadWholeFile(file);
+  line = line.substr(0, line.find('\n'));
+  const fs::path model = (sparse_folder / line).lexically_normal();
+  return IsColmapModel(model) ? std::optional(model) : std::nullopt;
 }
 
 fs::path LargestModel(const fs::path& sparse_folder) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,12 @@ int CountRegistered(const std::filesystem::path& model_folder);
 // The folders 0, 1, ... that contain a model, sorted by number: COLMAP writes one for each part of
 // the scene that it could not connect to another.
 std::vector<std::filesystem::path> SubModels(const std::filesystem::path& sparse_folder);
+
+// Records which of the models of a project is the one to use, where it is not the largest: in
+// chosen.txt, a path relative to the folder of the models.
+void ChooseModel(const std::filesystem::path& sparse_folder, const std::filesystem::path& model);
+// The recorded one; nothing if there is none, or it is not there any more.
+std::optional<std::filesystem::path> ChosenModel(const std::filesystem::path& sparse_folder);
 
 // The sub-model with most registered images, and among equals the lowest number. Throws InputError
 // when there is none.

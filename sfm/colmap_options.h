@@ -16,6 +16,9 @@ struct ColmapOptions {
   // Longer side, in pixels, to which photographs are reduced for feature extraction. Where it is
   // less than 1200, features are also extracted from the photographs enlarged by two.
   int max_image_size = 1600;
+  // Extract features also from the photographs enlarged by two, whatever their size: finer ones, in
+  // four times the time.
+  bool enlarge = false;
   // Features per photograph, those of largest scale. The time to match a pair grows with the
   // square.
   int max_num_features = 2048;

@@ -66,6 +66,8 @@ class FailureLine {
 
 }  // namespace
 
+bool ColmapProgram::IsInstalled() { return !bp::search_path("colmap").empty(); }
+
 ColmapProgram ColmapProgram::Find() {
   const boost::filesystem::path found = bp::search_path("colmap");
   if (found.empty()) {

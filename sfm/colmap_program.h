@@ -18,6 +18,7 @@ class ColmapProgram {
  public:
   // Looks up `colmap` in PATH. Throws InputError with instructions to install it.
   static ColmapProgram Find();
+  static bool IsInstalled();
 
   explicit ColmapProgram(std::filesystem::path executable) : executable_(std::move(executable)) {}
 

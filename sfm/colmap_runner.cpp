@@ -8,7 +8,7 @@
 
 #include "nerf/base/input_error.h"
 #include "sfm/colmap_images.h"
-#include "sfm/colmap_steps.h"
+#include "sfm/reconstruction.h"
 
 namespace nerf::sfm {
 namespace {
@@ -47,23 +47,6 @@ std::string ChooseMatcher(const std::string& wanted, const std::vector<Photo>& p
   return sequence ? "sequential" : photos.size() <= kExhaustiveMost ? "exhaustive" : "guided";
 }
 
-// Runs all steps, and repeats the last ones with more effort where too few photographs are
-// registered.
-void RunSteps(ColmapSteps& steps, const std::string& matcher, int photos) {
-  steps.ExtractFeatures();
-  steps.Match(matcher);
-  steps.Map();
-  if (matcher == "guided" && steps.Registered() < kWarnFraction * photos) {
-    spdlog::info("{} of {} registered; matching the remaining pairs", steps.Registered(), photos);
-    steps.MatchAllAndMap();
-  }
-  if (2 * steps.Registered() < photos) {
-    spdlog::info("{} of {} registered; mapping again with lower thresholds", steps.Registered(),
-                 photos);
-    steps.MapRelaxed();
-  }
-}
-
 // Replaces COLMAP's images in `posed` by the original photographs.
 //   returns  the names of the photographs that are not registered, sorted
 std::vector<std::string> RestorePhotographs(const std::vector<Photo>& photos,
@@ -87,6 +70,22 @@ std::vector<std::string> RestorePhotographs(const std::vector<Photo>& photos,
   for (const auto& [name, photo] : photo_of) unregistered.push_back(photo->name);
   std::ranges::sort(unregistered);
   return unregistered;
+}
+
+void WarnAbout(const ColmapReport& report) {
+  if (report.largest_model > report.registered) {
+    spdlog::warn(
+        "{} of {} photographs that COLMAP registered are left out: their poses contradict their "
+        "matches",
+        report.largest_model - report.registered, report.largest_model);
+  }
+  if (report.verdict.trust != Trust::kGood) {
+    spdlog::warn("the poses are {}: {}", NameOf(report.verdict.trust), report.verdict.reason);
+  }
+  if (report.registered < kWarnFraction * report.photos) {
+    spdlog::warn("COLMAP registered {} of {} photographs, not {}; {}", report.registered,
+                 report.photos, Listed(report.unregistered), kAdvice);
+  }
 }
 
 }  // namespace
@@ -128,28 +127,25 @@ PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& worksp
   }
   const std::vector<ColmapImage> plan = PlanColmapImages(folder.photos);
   const std::string matcher = ChooseMatcher(options.matcher, folder.photos, plan);
-  ColmapSteps steps(workspace, options, r.photos);
-  steps.PrepareImages(files, folder.photos, plan);
-  RunSteps(steps, matcher, r.photos);
-  r.seconds = steps.Seconds();
-  r.registered = steps.Registered();
+  Reconstruction found = Reconstruct(workspace, options, files, folder.photos, plan, matcher);
+  PosedImages& posed = found.posed;
+  r.seconds = found.seconds;
+  r.verdict = found.verdict;
+  r.largest_model = found.largest;
+  r.registered = static_cast<int>(posed.images.size());
   if (r.registered < kFewestRegistered || r.registered < kFewestFraction * r.photos) {
     throw InputError("{}: COLMAP registered only {} of {} photographs; {}{}; see {}",
                      photo_folder.string(), r.registered, r.photos, kAdvice,
                      matcher == "sequential" ? "; or try --matcher exhaustive" : "",
-                     steps.LogFile("mapper").parent_path().string());
+                     found.log.string());
   }
 
-  PosedImages posed = steps.ReadModel();
   r.unregistered = RestorePhotographs(folder.photos, plan, workspace, posed);
   r.points = static_cast<int>(posed.points.size());
   for (const SparsePoint& point : posed.points) {
     r.mean_reprojection_error += point.reprojection_error / static_cast<double>(r.points);
   }
-  if (r.registered < kWarnFraction * r.photos) {
-    spdlog::warn("COLMAP registered {} of {} photographs, not {}; {}", r.registered, r.photos,
-                 Listed(r.unregistered), kAdvice);
-  }
+  WarnAbout(r);
   return posed;
 }
 

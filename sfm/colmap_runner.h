@@ -8,6 +8,7 @@
 #include "nerf/scene/posed_images.h"
 #include "sfm/colmap_options.h"
 #include "sfm/photo_folder.h"
+#include "sfm/reconstruction_verdict.h"
 
 namespace nerf::sfm {
 
@@ -16,15 +17,16 @@ struct ColmapReport {
   int registered = 0;
   int points = 0;
   double mean_reprojection_error = 0;  // pixels, mean over the points
-  std::vector<SkippedPhoto> skipped;   // photographs that cannot be read
+  ReconstructionVerdict verdict;
+  int largest_model = 0;              // photographs in the largest model, which may not be trusted
+  std::vector<SkippedPhoto> skipped;  // photographs that cannot be read
   std::vector<std::string> unregistered;
   std::vector<std::pair<std::string, double>> seconds;  // per step, of the run that executed it
 };
 
 // Computes the poses of a folder of photographs with the installed COLMAP program, on the CPU:
-// feature extraction, matching and incremental mapping. If guided matching leaves more than one in
-// ten photographs unregistered, matches all pairs and maps again; if half are unregistered, maps
-// again with lower thresholds. Of all models, takes the one with most registered images.
+// feature extraction, our matching, and incremental mapping; with more effort where the result is
+// not good (Reconstruct).
 //
 // Writes to `workspace`: images/ (the input of COLMAP), database.db, sparse/, log/ and steps.json,
 // by which a second call skips finished steps and continues an interrupted match. Steps whose

@@ -104,11 +104,13 @@ void ColmapSteps::PrepareImages(const std::vector<PhotoFile>& files,
 // long. Small photographs have too few features otherwise.
 int ColmapSteps::FirstOctave() const {
   constexpr int kSmall = 1200;
-  return std::min(longest_side_, options_.max_image_size) < kSmall ? -1 : 0;
+  const bool is_small = std::min(longest_side_, options_.max_image_size) < kSmall;
+  return is_small || options_.enlarge ? -1 : 0;
 }
 
 void ColmapSteps::ExtractFeatures() {
-  const json inputs = {options_.camera_model, options_.max_image_size, options_.max_num_features};
+  json inputs = {options_.camera_model, options_.max_image_size, options_.max_num_features};
+  if (options_.enlarge) inputs.push_back("enlarged");
   Step("features", inputs, Database(), [&](StepLedger::State) {
     // Always from the beginning: COLMAP would create another camera for the photographs that an
     // interrupted run had not processed.
@@ -160,8 +162,19 @@ int ColmapSteps::Registered() const {
   return ModelsIn(Sparse()).empty() ? 0 : CountRegistered(LargestModel(Sparse()));
 }
 
-PosedImages ColmapSteps::ReadModel() const {
-  return ReadColmapModel(LargestModel(Sparse()), Images());
+std::vector<fs::path> ColmapSteps::Models() const {
+  std::vector<std::pair<int, fs::path>> counted;
+  for (const fs::path& model : ModelsIn(Sparse())) {
+    counted.emplace_back(-CountRegistered(model), model);
+  }
+  std::ranges::sort(counted);
+  std::vector<fs::path> models;
+  for (const auto& [count, model] : counted) models.push_back(model);
+  return models;
+}
+
+PosedImages ColmapSteps::ReadModel(const fs::path& model) const {
+  return ReadColmapModel(model, Images());
 }
 
 fs::path ColmapSteps::LogFile(const std::string& step) const {

@@ -47,9 +47,11 @@ class ColmapSteps {
 
   // The number of registered photographs of the largest model; 0 where there is no model.
   int Registered() const;
-  // The largest model. Throws InputError where there is none.
-  PosedImages ReadModel() const;
+  // The models that were found, those with most photographs first.
+  std::vector<std::filesystem::path> Models() const;
+  PosedImages ReadModel(const std::filesystem::path& model) const;
 
+  std::filesystem::path Sparse() const { return workspace_ / "sparse"; }
   std::filesystem::path Database() const { return workspace_ / "database.db"; }
   std::filesystem::path LogFile(const std::string& step) const;
   // The seconds that each step took; for a skipped step those of the call that executed it.
@@ -59,7 +61,6 @@ class ColmapSteps {
   using Arguments = std::vector<std::string>;
 
   std::filesystem::path Images() const { return workspace_ / "images"; }
-  std::filesystem::path Sparse() const { return workspace_ / "sparse"; }
 
   // Calls work(state) unless the step was finished from the same inputs and its result exists.
   void Step(const std::string& name, const nlohmann::json& inputs,

@@ -30,12 +30,13 @@ struct Rays {
   double max_angle = 0;  // of the error, radians
 };
 
-std::vector<Rays> RaysOf(const PosedImages& posed, std::span<const SeenTwice> matches) {
+std::vector<Rays> RaysOf(const PosedImages& posed, std::span<const SeenTwice> matches,
+                         double max_error) {
   std::vector<Rays> rays;
   for (const SeenTwice& pair : matches) {
     const Camera& a = posed.cameras[posed.images[pair.images.first].camera];
     const Camera& b = posed.cameras[posed.images[pair.images.second].camera];
-    const double max_angle = kMaxError / std::min(FocalLength(a), FocalLength(b));
+    const double max_angle = max_error / std::min(FocalLength(a), FocalLength(b));
     const std::size_t step = std::max<std::size_t>(1, pair.in_first.size() / kMostOfPair);
     for (std::size_t i = 0; i < pair.in_first.size(); i += step) {
       const auto first = DirectionFromPixel(a, pair.in_first[i]);
@@ -124,6 +125,20 @@ std::vector<Mistake> KnownMistakes(const std::vector<Isometry3d>& poses) {
 
 }  // namespace
 
+std::vector<ImageFit> FitOfImages(const PosedImages& posed, std::span<const SeenTwice> matches,
+                                  double max_error) {
+  std::vector<ImageFit> fits(posed.images.size());
+  const Mistake none{"", [&](int i) { return posed.images[i].world_from_camera; }};
+  for (const Rays& rays : RaysOf(posed, matches, max_error)) {
+    const int fitting = Fits(rays, none) ? 1 : 0;
+    for (const int image : {rays.images.first, rays.images.second}) {
+      ++fits[image].matches;
+      fits[image].fitting += fitting;
+    }
+  }
+  return fits;
+}
+
 bool PoseConsistency::Contradicts() const { return share < kContradicts; }
 
 std::string Describe(const PoseConsistency& consistency) {
@@ -142,7 +157,7 @@ std::string Describe(const PoseConsistency& consistency) {
 
 PoseConsistency CheckPoses(const PosedImages& posed, std::span<const SeenTwice> matches) {
   PoseConsistency result;
-  const std::vector<Rays> rays = RaysOf(posed, matches);
+  const std::vector<Rays> rays = RaysOf(posed, matches, kMaxError);
   if (rays.size() < kFewest) {
     result.share = std::numeric_limits<double>::quiet_NaN();
     return result;

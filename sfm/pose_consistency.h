@@ -18,10 +18,19 @@ struct SeenTwice {
   std::vector<Eigen::Vector2d> in_first, in_second;  // pixels
 };
 
+// How many of an image's matches fit the poses: near the epipolar line, and in front of both
+// cameras. At most 60 of each pair are looked at.
+struct ImageFit {
+  int matches = 0, fitting = 0;
+};
+// For each of posed.images.
+//   max_error  pixels
+std::vector<ImageFit> FitOfImages(const PosedImages& posed, std::span<const SeenTwice> matches,
+                                  double max_error);
+
 // How well poses and lenses agree with what the photographs show.
 struct PoseConsistency {
-  // Share of the matches that fit the given poses: within 4 pixels of the epipolar line, and in
-  // front of both cameras. NaN where there are too few matches to tell.
+  // Share of the matches that fit the given poses (ImageFit). NaN where there are too few to tell.
   double share = 0;
   // What would explain them better, as the rest of a sentence; empty where the poses fit, or
   // nothing that is known does.

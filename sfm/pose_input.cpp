@@ -30,6 +30,7 @@ fs::path FolderOf(const fs::path& file) {
 std::optional<fs::path> FindColmapModel(const fs::path& input) {
   for (const fs::path& folder : {input, input / "sparse", input / "colmap" / "sparse"}) {
     if (IsColmapModel(folder)) return folder;
+    if (const auto chosen = ChosenModel(folder)) return chosen;
     if (!SubModels(folder).empty()) return LargestModel(folder);
   }
   return std::nullopt;

@@ -70,14 +70,15 @@ bool IsOpaqueAround(const Image& image, int x, int y) {
   return true;
 }
 
-PhotoFeatures LookAt(const PosedImages& posed, int image, const Features& features,
-                     const Eigen::Vector2d& scale) {
+// Throws InputError as LoadPhotograph does, also where the photograph has not the size of its
+// camera.
+PhotoFeatures LookAt(const PosedImages& posed, int image, const Features& features) {
   const Photograph photograph =
       LoadPhotograph(posed, posed.images[image], {1, MaskMeaning::kEmpty});
   const Image& pixels = photograph.pixels;
   PhotoFeatures found;
   for (const Eigen::Vector2f& position : features.positions) {
-    found.pixels.push_back(position.cast<double>().cwiseProduct(scale));
+    found.pixels.push_back(position.cast<double>());
     const int x = std::clamp(static_cast<int>(found.pixels.back().x()), 0, pixels.width - 1);
     const int y = std::clamp(static_cast<int>(found.pixels.back().y()), 0, pixels.height - 1);
     found.rgb.emplace_back();
@@ -119,21 +120,15 @@ Matched ReadMatched(const PosedImages& posed, const std::vector<Photo>& photos,
   for (const ColmapImage& image : plan) photo_of[image.name] = &photos[image.photo];
   Matched matched;
   std::vector<Features> features;
-  std::vector<Eigen::Vector2d> scales;
   for (std::size_t i = 0; i < database.Names().size(); ++i) {
-    const Photo& photo = *photo_of.at(database.Names()[i]);
-    const int image = NumberOf(photo.name);
-    const Camera& camera = posed.cameras[posed.images[image].camera];
-    matched.image_of.push_back(image);
+    matched.image_of.push_back(NumberOf(photo_of.at(database.Names()[i])->name));
     features.push_back(database.ReadFeatures(static_cast<int>(i)));
-    scales.emplace_back(static_cast<double>(camera.width) / photo.UprightWidth(),
-                        static_cast<double>(camera.height) / photo.UprightHeight());
   }
   matched.features.resize(features.size());
   ParallelForEach(
       std::ssize(features),
       [&](std::int64_t i) {
-        matched.features[i] = LookAt(posed, matched.image_of[i], features[i], scales[i]);
+        matched.features[i] = LookAt(posed, matched.image_of[i], features[i]);
       },
       threads);
   for (const auto& [pair, count] : database.VerifiedPairs()) {

@@ -1,8 +1,10 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +16,7 @@
 #include "nerf/effects/effects.h"
 #include "nerf/effects/inspection.h"
 #include "nerf/image/image_io.h"
+#include "nerf/pipeline/found_points.h"
 #include "nerf/pipeline/inspection_picture.h"
 #include "sfm/masks.h"
 #include "sfm/photo_folder.h"
@@ -25,7 +28,7 @@ namespace {
 struct InspectArguments {
   std::string input;
   int threads = 0;
-  bool json = false;
+  bool json = false, given_points_only = false;
   std::string picture;
 };
 
@@ -71,6 +74,37 @@ PosedImages WithoutPoses(const std::filesystem::path& folder) {
   return photographs;
 }
 
+// A folder for COLMAP's files, which is removed with it.
+class WorkFolder {
+ public:
+  WorkFolder()
+      : path_(std::filesystem::temp_directory_path() / fmt::format("nerf-inspect-{}", getpid())) {}
+  ~WorkFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  const std::filesystem::path& Path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Finds sparse points for poses without any.
+void FindPoints(PosedImages& posed) {
+  const WorkFolder folder;
+  FindMissingPoints(posed, folder.Path(), std::numeric_limits<double>::infinity(),
+                    [](const PipelineEvent& event) {
+                      if (const auto* warning = std::get_if<Warning>(&event)) {
+                        spdlog::warn("{}", warning->text);
+                      } else if (const auto* found = std::get_if<PointsFound>(&event)) {
+                        spdlog::info("{}; {}", sfm::Describe(found->report.consistency),
+                                     sfm::Describe(found->report));
+                      }
+                    });
+}
+
 void RunInspect(const InspectArguments& arguments) {
   UseThreads(arguments.threads);
   const sfm::InputLocation location = sfm::FindInput(arguments.input);
@@ -84,6 +118,7 @@ void RunInspect(const InspectArguments& arguments) {
   for (const std::string& warning : posed.warnings) spdlog::warn("{}", warning);
   Inspection inspection;
   if (has_poses) {
+    if (!arguments.given_points_only) FindPoints(posed);
     ProgressLine progress("inspecting", static_cast<std::int64_t>(posed.images.size()));
     inspection = Inspect(posed, [&](int read) { progress.Update(read); });
     progress.Finish();
@@ -118,6 +153,8 @@ void AddInspectCommand(CLI::App& app) {
       ->required();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");
+  command->add_flag("--given-points-only", arguments->given_points_only,
+                    "do not find sparse points where the input has poses but none");
   command->add_option(
       "--picture", arguments->picture,
       "write a plot to FILE.png: the exposure of each photograph, and the colour change of points "

@@ -46,6 +46,7 @@ void PrintReport(const sfm::ColmapReport& report, const fs::path& transforms) {
   }
   row("points", fmt::format("{}", report.points));
   row("mean reprojection error", fmt::format("{:.2f} pixels", report.mean_reprojection_error));
+  row("verdict", sfm::Describe(report.verdict));
   double total = 0;
   for (const auto& [step, seconds] : report.seconds) {
     row("seconds, " + step, fmt::format("{:.1f}", seconds));

@@ -72,6 +72,11 @@ void TrainingDisplay::Show(const PosesFound& event) {
   Print("poses: {} of {} photographs registered, {} points, reprojection error {:.2f} px, {}\n",
         report.registered, report.photos, report.points, report.mean_reprojection_error,
         FormatDuration(seconds));
+  Print("poses: {}\n", sfm::Describe(report.verdict));
+}
+
+void TrainingDisplay::Show(const PointsFound& event) {
+  Print("poses: {}; {}\n", sfm::Describe(event.report.consistency), sfm::Describe(event.report));
 }
 
 void TrainingDisplay::Show(const ResolutionChosen& event) {

@@ -21,6 +21,7 @@ class TrainingDisplay {
   void Show(const WaitEstimated& event);
   void Show(const FilmRead& event);
   void Show(const PosesFound& event);
+  void Show(const PointsFound& event);
   void Show(const ResolutionChosen& event);
   void Show(const InspectionProgress& event);
   void Show(const CaptureInspected& event);

@@ -9,6 +9,7 @@
 #include "nerf/base/quantile.h"
 #include "nerf/inspect/angle_residuals.h"
 #include "nerf/inspect/evidence.h"
+#include "nerf/inspect/point_shares.h"
 #include "nerf/inspect/verdict.h"
 
 namespace nerf {
@@ -17,9 +18,15 @@ namespace {
 constexpr std::size_t kFewestViews = 5;       // of a point
 constexpr double kViewDependentShare = 0.12;  // threshold: share of points whose colour changes
 
+// Points that are found in fewer of the photographs that should show them are those that look alike
+// from everywhere: of the chair, whose gloss is worth 3 dB, 8 % of them change.
+constexpr double kFewSightings = 1.0 / 3;
+constexpr double kInconclusive = 0.4;
+
 }  // namespace
 
-Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit) {
+Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit,
+                            double sighted_share) {
   struct Spread {
     std::vector<double> residual, contrast;
   };
@@ -41,10 +48,16 @@ Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit)
                      fmt::format("only {} points have {} or more sightings", judged, kFewestViews));
   }
   const double share = static_cast<double>(changing) / static_cast<double>(judged);
-  return Measured(kViewDependenceEffect.name, share, kViewDependentShare,
-                  fmt::format("the colour of {:.1f} % of the points changes with the view by more "
-                              "than their texture explains (threshold {:.0f} %)",
-                              100 * share, 100 * kViewDependentShare));
+  Verdict verdict =
+      Measured(kViewDependenceEffect.name, share, kViewDependentShare,
+               fmt::format("the colour of {:.1f} % of the points changes with the view by more "
+                           "than their texture explains (threshold {:.0f} %)",
+                           100 * share, 100 * kViewDependentShare));
+  if (!verdict.on && sighted_share < kFewSightings) {
+    verdict.most_confidence = kInconclusive;
+    verdict.evidence += ", but glossy places rarely match";
+  }
+  return verdict;
 }
 
 const EffectDescriptor kViewDependenceEffect = {
@@ -54,7 +67,7 @@ const EffectDescriptor kViewDependenceEffect = {
     .stage = "colour network",
     .judge =
         [](const CaptureEvidence& e) {
-          return e.HasTracks() ? JudgeViewDependence(e.colors, e.fit)
+          return e.HasTracks() ? JudgeViewDependence(e.colors, e.fit, SightedShare(*e.posed))
                                : Undecided(kViewDependenceEffect.name, e.unknown_because);
         },
 };

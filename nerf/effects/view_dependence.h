@@ -25,7 +25,11 @@ constexpr ColorModel ColorModelOf(bool view_dependence) {
 
 // Judges by the share of points whose colour changes between views by more than their local texture
 // explains (an error of a pixel, another slant). Undecided where too few points have long tracks.
-Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit);
+// Where most sightings of points are missing, few changing points are no evidence that there is no
+// gloss: the verdict is inconclusive.
+//   sighted_share  SightedShare
+Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit,
+                            double sighted_share);
 
 extern const EffectDescriptor kViewDependenceEffect;
 

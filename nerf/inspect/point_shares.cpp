@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "nerf/base/quantile.h"
+#include "nerf/scene/camera.h"
+
 namespace nerf {
 namespace {
 
@@ -35,6 +38,22 @@ PointShares SharesOfPoints(const PosedImages& posed,
     shares.near.radius = std::max(shares.near.radius, kMargin * (x - shares.near.centre).norm());
   }
   return shares;
+}
+
+double SightedShare(const PosedImages& posed) {
+  std::vector<double> shares;
+  for (const SparsePoint& point : posed.points) {
+    int in_frame = 0;
+    for (const PosedImage& image : posed.images) {
+      const Camera& camera = posed.cameras[image.camera];
+      const auto pixel =
+          PixelFromPoint(camera, image.world_from_camera.inverse() * point.x_in_world);
+      in_frame += pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < camera.width &&
+                  pixel->y() < camera.height;
+    }
+    if (in_frame > 0) shares.push_back(static_cast<double>(point.track.size()) / in_frame);
+  }
+  return shares.empty() ? 0 : Median(shares);
 }
 
 bool IsBeforeBackground(const PointShares& shares) {

@@ -21,6 +21,11 @@ struct PointShares {
 PointShares SharesOfPoints(const PosedImages& posed,
                            const SceneNormalization& normalized_from_world);
 
+// Of the photographs with a point in their frame, the share whose track sees it; the median of the
+// points. What is in the way lowers it, and much more so a matcher, which loses a point where its
+// surroundings look different: it finds few points on glossy surfaces.
+double SightedShare(const PosedImages& posed);
+
 // Of photographs without alpha: whether points are near or far and hardly any in between. What is
 // far is then a background, and rays may end at the ball about what is near. Where points are
 // everywhere, contracted space holds the far ones too.

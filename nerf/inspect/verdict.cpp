@@ -10,7 +10,7 @@ namespace nerf {
 double Verdict::Confidence() const {
   if (!decided) return 0;
   if (threshold <= 0 || figure <= 0) return 1;
-  return std::min(1.0, std::fabs(std::log2(figure / threshold)));
+  return std::min(most_confidence, std::fabs(std::log2(figure / threshold)));
 }
 
 Verdict Fact(const std::string& effect, bool on, double figure, const std::string& evidence,
@@ -43,6 +43,7 @@ Verdict FromTrial(Verdict verdict, double psnr_with, double psnr_without, double
   verdict.figure = psnr_with - psnr_without;
   verdict.threshold = required_gain;
   verdict.decided = verdict.from_trial = true;
+  verdict.most_confidence = 1;
   verdict.on = verdict.figure >= required_gain;
   verdict.assignment = EffectAssignment(verdict.effect, verdict.on ? "{}" : "null");
   verdict.evidence = fmt::format("{}; trial: {:.2f} dB with it, {:.2f} dB without",

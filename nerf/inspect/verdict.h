@@ -15,9 +15,11 @@ struct Verdict {
   double threshold = 0;  // at and above which the scene needs the effect
   bool decided = false;  // whether there is any evidence
   bool on = false;
-  bool from_trial = false;  // a trial run has decided it
+  bool from_trial = false;     // a trial run has decided it
+  double most_confidence = 1;  // less where the evidence may be one-sided
 
-  // 0 at the threshold, 1 at twice or half of it and beyond; 1 for facts, 0 without evidence.
+  // 0 at the threshold, 1 (or most_confidence) at twice or half of it and beyond; 1 for facts, 0
+  // without evidence.
   double Confidence() const;
   // Whether the verdict is applied as it is; others can be decided by a trial.
   bool IsConclusive() const { return from_trial || Confidence() >= 0.5; }

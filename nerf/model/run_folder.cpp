@@ -17,6 +17,7 @@ fs::path PicturePath(const fs::path& run) { return run / "picture.png"; }
 fs::path MetricsPath(const fs::path& run) { return run / "metrics.jsonl"; }
 fs::path FramesPath(const fs::path& run) { return run / "frames"; }
 fs::path ColmapPath(const fs::path& run) { return run / "colmap"; }
+fs::path PointsPath(const fs::path& run) { return run / "points"; }
 fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
 
 Checkpoint ReadRunCheckpoint(const fs::path& run) {

@@ -15,6 +15,7 @@ namespace nerf {
 //   metrics.jsonl            one line per validation
 //   frames/                  the frames of a film
 //   colmap/                  COLMAP's files, if poses were found from photographs
+//   points/                  the same, if sparse points were found for poses that were given
 //   picture.png              a photograph and its rendering, at the end of training
 //   refined_transforms.json  refined poses, with pose_refinement
 //   sparse/                  the input's sparse points, a COLMAP model, with depth_supervision
@@ -26,6 +27,7 @@ std::filesystem::path PicturePath(const std::filesystem::path& run);
 std::filesystem::path MetricsPath(const std::filesystem::path& run);
 std::filesystem::path FramesPath(const std::filesystem::path& run);
 std::filesystem::path ColmapPath(const std::filesystem::path& run);
+std::filesystem::path PointsPath(const std::filesystem::path& run);
 std::filesystem::path SparsePath(const std::filesystem::path& run);
 
 // A trained run, for rendering and evaluation.

@@ -19,6 +19,7 @@
 #include "nerf/train/trainer.h"
 #include "sfm/colmap_runner.h"
 #include "sfm/film.h"
+#include "sfm/sparse_points.h"
 
 namespace nerf {
 
@@ -42,6 +43,10 @@ struct FilmRead {
 // COLMAP found the poses of plain photographs.
 struct PosesFound {
   sfm::ColmapReport report;
+};
+// Sparse points were found for poses that were given.
+struct PointsFound {
+  sfm::SparsePointReport report;
 };
 // Reported by worker threads, one at a time.
 struct InspectionProgress {
@@ -96,9 +101,10 @@ struct TrainingEnded {
 };
 
 using PipelineEvent =
-    std::variant<Warning, WaitEstimated, FilmRead, PosesFound, ResolutionChosen, InspectionProgress,
-                 CaptureInspected, DataPlanned, VerdictReached, EffectsTried, EffectsUndecided,
-                 BudgetPlanned, TrainingBegan, TrainerEvent, PosesRefined, TrainingEnded>;
+    std::variant<Warning, WaitEstimated, FilmRead, PosesFound, PointsFound, ResolutionChosen,
+                 InspectionProgress, CaptureInspected, DataPlanned, VerdictReached, EffectsTried,
+                 EffectsUndecided, BudgetPlanned, TrainingBegan, TrainerEvent, PosesRefined,
+                 TrainingEnded>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // A listener that ignores all events.

@@ -26,10 +26,11 @@ struct PreparedScene {
 };
 
 // Reads the poses of the input, or finds them with COLMAP in `folder`/colmap for plain photographs;
-// assigns splits and normalizes the scene.
+// finds sparse points in `folder`/points where there are none (FindMissingPoints); assigns splits
+// and normalizes the scene.
 // Throws InputError.
 PreparedScene PrepareScene(const std::filesystem::path& input, const std::filesystem::path& folder,
-                           const DataOptions& options, const PipelineListener& listener);
+                           const Config& config, const PipelineListener& listener);
 
 // Inspects the capture. If the scene is bounded, changes the normalized frame.
 //   requested  effects that the user has decided, as in `config`

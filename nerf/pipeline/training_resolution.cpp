@@ -21,6 +21,8 @@ int DownscaleFor(int longest_side, double seconds) {
   return std::max(1, static_cast<int>(std::lround(longest_side / side)));
 }
 
-double ApproximateSeconds(int steps) { return kSecondsPerStep * steps; }
+double TrainingSeconds(const TrainOptions& options) {
+  return options.time_budget > 0 ? options.time_budget : kSecondsPerStep * options.steps;
+}
 
 }  // namespace nerf

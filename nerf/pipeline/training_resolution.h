@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nerf/config/train_options.h"
+
 namespace nerf {
 
 // The factor by which photographs are reduced where the user does not say it: to the resolution
@@ -9,7 +11,7 @@ namespace nerf {
 //   returns       1 or more
 int DownscaleFor(int longest_side, double seconds);
 
-// The approximate length of a training without a time budget.
-double ApproximateSeconds(int steps);
+// How long a training takes, roughly.
+double TrainingSeconds(const TrainOptions& options);
 
 }  // namespace nerf

@@ -83,17 +83,12 @@ double TrainingSession::SpentSeconds() const {
   return std::min(watch_.Seconds() + kPictureSeconds, budget / 2);
 }
 
-double TrainingSession::TrainingSeconds() const {
-  const TrainOptions& train = config_.train;
-  return train.time_budget > 0 ? train.time_budget : ApproximateSeconds(train.steps);
-}
-
 // For photographs and films whose poses are not found yet.
 void TrainingSession::EstimateWait() const {
   const sfm::InputLocation input = sfm::FindInput(request_.input);
   if (fs::exists(ColmapPath(request_.run))) return;
   WaitEstimated wait;
-  wait.training_seconds = TrainingSeconds();
+  wait.training_seconds = TrainingSeconds(config_.train);
   sfm::ColmapOptions colmap;
   int longest_side = 0;
   if (input.kind == sfm::InputKind::kPhotos) {
@@ -124,7 +119,7 @@ void TrainingSession::ChooseResolution() {
   }
   const auto size = [](const Camera& camera) { return std::max(camera.width, camera.height); };
   const Camera& largest = *std::ranges::max_element(scene_.posed.cameras, {}, size);
-  const int downscale = DownscaleFor(size(largest), TrainingSeconds());
+  const int downscale = DownscaleFor(size(largest), TrainingSeconds(config_.train));
   if (downscale == 1) return;
   request_.assignments.push_back(fmt::format("data.downscale={}", downscale));
   config_ = ConfigWithDecisions(request_.preset);
@@ -135,7 +130,7 @@ void TrainingSession::PrepareCapture() {
   config_ = ConfigWithDecisions(request_.preset);
   CheckRunFolder();
   EstimateWait();  // fails before a run folder is created
-  scene_ = PrepareScene(request_.input, request_.run, config_.data, listener_);
+  scene_ = PrepareScene(request_.input, request_.run, config_, listener_);
   RequireValidation();
   ChooseResolution();
   if (request_.effects.inspect) {

@@ -52,8 +52,7 @@ class TrainingSession {
   void DecideEffects();  // runs trials for inconclusive effects
   void PlanTimeBudget();
   TrainSummary Train(const std::atomic<bool>& stop);
-
-  double TrainingSeconds() const;  // roughly
+  // roughly
   void EstimateWait() const;
   void ChooseResolution();
   Config ConfigWithDecisions(const std::string& preset) const;

@@ -10,6 +10,7 @@
 #include "nerf/output/camera_path.h"
 #include "nerf/scene/camera.h"
 #include "nerf/synthetic/hash.h"
+#include "nerf/synthetic/scenario.h"
 
 namespace nerf::synthetic {
 namespace {
@@ -73,7 +74,8 @@ PosedImages CameraRings(const SampleOptions& options) {
     const double start =
         137.5 * static_cast<double>(ring);  // so that no view is straight above another
     for (int i = 0; i < counts[ring]; ++i) {
-      const double azimuth = (start + 360.0 * i / counts[ring] + 2 * irregular.Next()) * kDegree;
+      const double azimuth = AzimuthIn(
+          options.scenario, (start + 360.0 * i / counts[ring] + 2 * irregular.Next()) * kDegree);
       const double elevation = (elevations[ring] + 2 * irregular.Next()) * kDegree;
       const auto view = static_cast<int>(posed.images.size());
       const double distance =

@@ -25,14 +25,22 @@ void Store(const Triple& value, float* pixel) {
   for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(value[c]);
 }
 
+// The pose of a camera that turns, when a share of the time has passed.
+Eigen::Isometry3d Turned(const Eigen::Isometry3d& world_from_camera, const Vector3d& turn,
+                         double share) {
+  if (turn.isZero()) return world_from_camera;
+  return world_from_camera * Eigen::AngleAxisd((share - 0.5) * turn.norm(), turn.normalized());
+}
+
 Color PixelRadiance(const Scene& scene, const Camera& camera,
-                    const Eigen::Isometry3d& world_from_camera, int x, int y, int samples_per_pixel,
-                    unsigned seed) {
+                    const Eigen::Isometry3d& world_from_camera, const Vector3d& turn, int x, int y,
+                    int samples_per_pixel, unsigned seed) {
   const Vector2d shift(UnitFromHash(Hash(x, y, 0, seed)), UnitFromHash(Hash(x, y, 1, seed)));
   Color sum = Color::Zero();
   for (int i = 0; i < samples_per_pixel; ++i) {
     const Vector2d pixel = Vector2d(x, y) + PointInPixel(i, shift);
-    sum += Radiance(scene, RayThroughPixel(camera, world_from_camera, pixel), kBounces);
+    const auto pose = Turned(world_from_camera, turn, (i + 0.5) / samples_per_pixel);
+    sum += Radiance(scene, RayThroughPixel(camera, pose, pixel), kBounces);
   }
   return sum / samples_per_pixel;
 }
@@ -92,8 +100,8 @@ View RenderView(const Scene& scene, const Camera& camera,
                                  settings.passers_by.end());
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      Color light =
-          PixelRadiance(with_passers_by, camera, world_from_camera, x, y, samples_per_pixel, seed);
+      Color light = PixelRadiance(with_passers_by, camera, world_from_camera, settings.turn, x, y,
+                                  samples_per_pixel, seed);
       if (settings.alpha) {
         const double alpha =
             Alpha(with_passers_by, camera, world_from_camera, x, y, samples_per_pixel, seed);

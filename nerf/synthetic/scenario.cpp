@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "nerf/base/input_error.h"
 #include "nerf/synthetic/hash.h"
@@ -30,6 +31,11 @@ constexpr ScenarioName kNames[] = {
     {"hdr", Scenario::kHdr},
     {"pose_refinement", Scenario::kPoseRefinement, "poses"},
     {"anti_aliasing", Scenario::kAntiAliasing, "footprint"},
+    {"textureless", Scenario::kTextureless},
+    {"repeated", Scenario::kRepeated},
+    {"mirrors", Scenario::kMirrors},
+    {"two_groups", Scenario::kTwoGroups},
+    {"motion_blur", Scenario::kMotionBlur},
 };
 
 constexpr double kInfinity = 1000;  // radius of a dome that no camera can tell from infinity
@@ -51,8 +57,12 @@ const Color kGloss = Color::Constant(0.8);
 constexpr double kGlossExponent = 6;  // half as bright 27 degrees off
 
 constexpr int kHeldOutEvery = 8;
-constexpr double kFarFactor = 4;  // of the distance of the far cameras of kAntiAliasing
-constexpr double kHdrSun = 8;     // factor of the sun's irradiance in kHdr
+constexpr double kFarFactor = 4;         // of the distance of the far cameras of kAntiAliasing
+constexpr double kMirror = 0.85;         // reflectance of everything in kMirrors
+constexpr double kGroup = 0.2;           // of a ring, each of the two groups of kTwoGroups
+constexpr int kBlurredEvery = 3;         // in kMotionBlur
+constexpr double kTurnWhileOpen = 0.02;  // radians, in kMotionBlur
+constexpr double kHdrSun = 8;            // factor of the sun's irradiance in kHdr
 
 // The i-th random number of a view, in [-1, 1).
 double Signed(int i, int view, unsigned seed) {
@@ -83,6 +93,37 @@ bool IsGround(const Object& object) { return std::holds_alternative<Disc>(object
 
 bool IsCutOut(Scenario scenario) {
   return scenario == Scenario::kAlpha || scenario == Scenario::kAntiAliasing;
+}
+
+// Hardly any texture: marble of one colour in broad, faint clouds.
+Texture Faded(const Texture& texture) {
+  constexpr double kContrast = 0.06;
+  const Color color = Evaluate(texture, Vector3d(0.31, 0.17, 0.11));
+  Marble marble{.ramp = {}, .frequency = 1.5, .octaves = 1, .seed = 71};
+  for (int i = 0; i < 4; ++i) marble.ramp[i] = color * (1 + kContrast * (i / 3.0 - 0.5));
+  return marble;
+}
+
+// A pattern of two by two cells, everywhere the same.
+Texture Repeated() {
+  return Mosaic{.palette = {ColorFromSrgbHex(0xd5553a), ColorFromSrgbHex(0xf0b14a),
+                            ColorFromSrgbHex(0xf3e3c3), ColorFromSrgbHex(0x8c2f39)},
+                .mortar = ColorFromSrgbHex(0x3a2c2a),
+                .tile = 0.12,
+                .period = 2,
+                .seed = 37};
+}
+
+// Changes surfaces for the scenarios that are hard for structure from motion.
+void MakeHard(Scenario scenario, Scene& scene) {
+  for (Object& object : scene.objects) {
+    if (scenario == Scenario::kTextureless) object.material.albedo = Faded(object.material.albedo);
+    if (scenario == Scenario::kRepeated) object.material.albedo = Repeated();
+    if (scenario == Scenario::kMirrors) object.material.mirror.setConstant(kMirror);
+  }
+  if (scenario == Scenario::kTextureless || scenario == Scenario::kRepeated) {
+    scene.dome->radiance = Plain{ColorFromSrgbHex(0xb9d6ea)};
+  }
 }
 
 }  // namespace
@@ -140,6 +181,7 @@ Scene SceneFor(Scenario scenario) {
     }
   }
   if (scenario == Scenario::kHdr) scene.sun.irradiance *= kHdrSun;
+  MakeHard(scenario, scene);
   return scene;
 }
 
@@ -149,6 +191,14 @@ double DistanceFactor(Scenario scenario, int view) {
   if (scenario != Scenario::kAntiAliasing) return 1;
   // Near and far alternate, among the held-out views as well.
   return (view + view / kHeldOutEvery) % 2 == 0 ? 1 : kFarFactor;
+}
+
+double AzimuthIn(Scenario scenario, double azimuth) {
+  if (scenario != Scenario::kTwoGroups) return azimuth;
+  const double turns = azimuth / (2 * std::numbers::pi);
+  const double half = 2 * (turns - std::floor(turns));  // 0 to 1 in one group, 1 to 2 in the other
+  const double side = std::floor(half);
+  return 2 * std::numbers::pi * (side / 2 + kGroup * (half - side));
 }
 
 PhotoSettings PhotoSettingsFor(Scenario scenario, int view, unsigned seed,
@@ -162,6 +212,10 @@ PhotoSettings PhotoSettingsFor(Scenario scenario, int view, unsigned seed,
     for (int c = 0; c < 3; ++c) {
       settings.gain[c] *= 1 + kWhiteBalance * Signed(5 + c, view, seed);
     }
+  }
+  if (scenario == Scenario::kMotionBlur && view % kBlurredEvery == kBlurredEvery - 1) {
+    settings.turn =
+        kTurnWhileOpen * Vector3d(Signed(9, view, seed), Signed(10, view, seed), 0).normalized();
   }
   const bool has_passers_by = scenario == Scenario::kMasks || scenario == Scenario::kRobust;
   if (has_passers_by && !IsHeldOut(view)) {

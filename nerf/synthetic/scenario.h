@@ -24,6 +24,12 @@ enum class Scenario {
   kHdr,               // radiance in EXR files, far brighter than white
   kPoseRefinement,    // the poses that come with the photographs are slightly wrong
   kAntiAliasing,      // a subject cut out by alpha, half of the photographs from four times as far
+  // Captures that are hard for structure from motion:
+  kTextureless,  // hardly any texture
+  kRepeated,     // a pattern that repeats
+  kMirrors,      // everything mirrors its surroundings
+  kTwoGroups,    // photographs from two sides that hardly overlap
+  kMotionBlur,   // every third photograph is blurred by the movement of the camera
 };
 
 // The scenario with a name as the command line has it: "built-in", "view_dependence", ... The names
@@ -45,12 +51,18 @@ bool IsHeldOut(int view);
 // The distance of a camera from the subject, relative to the ordinary one.
 double DistanceFactor(Scenario scenario, int view);
 
+// The azimuth of a view where it would be at `azimuth` on a full ring, radians.
+double AzimuthIn(Scenario scenario, double azimuth);
+
 // How one photograph is taken.
 struct PhotoSettings {
-  Color gain = Color::Ones();      // factor of the radiance, from exposure and white balance
-  bool linear = false;             // stores radiance; else sRGB, clipped to [0,1]
-  bool alpha = false;              // with an alpha channel: 0 where a ray hits nothing
-  bool mask = false;               // with a mask that is black on passers-by
+  Color gain = Color::Ones();  // factor of the radiance, from exposure and white balance
+  bool linear = false;         // stores radiance; else sRGB, clipped to [0,1]
+  bool alpha = false;          // with an alpha channel: 0 where a ray hits nothing
+  bool mask = false;           // with a mask that is black on passers-by
+  // The rotation of the camera while the photograph is taken: an angle, radians, about an axis in
+  // its own axes.
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
   std::vector<Object> passers_by;  // stand before this camera and are in no other photograph
 };
 

@@ -49,7 +49,8 @@ Color At(const Marble& marble, const Vector3d& x) {
 
 Color At(const Mosaic& mosaic, const Vector3d& x) {
   // The offset of half a tile keeps the faces of a box, at multiples of the tile, off the joints.
-  const Vector3d p = x / mosaic.tile + Vector3d::Constant(0.5);
+  Vector3d p = x / mosaic.tile + Vector3d::Constant(0.5);
+  if (mosaic.period > 0) p -= mosaic.period * Floor(p / mosaic.period).cast<double>();
   const Vector3i cell = Floor(p);
   const double grain = FractalNoise(p * 2.0, 2, mosaic.seed + 1);
   const Vector3d from_edge =

@@ -35,6 +35,7 @@ struct Mosaic {
   Color mortar = Color::Zero();
   double tile = 0.1;   // edge of a cube, scene units
   double joint = 0.1;  // width of a joint, as a fraction of the tile
+  int period = 0;      // cells after which the pattern repeats; 0: never
   std::uint32_t seed = 0;
 };
 

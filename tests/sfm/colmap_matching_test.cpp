@@ -22,17 +22,19 @@ using testing::Not;
 
 class Matching : public nerf::test::ColmapRun {
  protected:
-  // Photographs around one place, whose features the fake COLMAP finds.
-  void WriteScene(int count) {
-    WritePhotos(count);
+  // Photographs around one place, of which the fake COLMAP finds the features, and registers the
+  // first.
+  void WriteScene(int count, int registered) {
     const test::FeatureScene scene(
-        {.images = count, .points = 80, .opaque = true, .arc = 2 * std::numbers::pi / count});
+        {.images = count, .points = 300, .opaque = true, .arc = 2 * std::numbers::pi / count});
     std::vector<test::DatabaseImage> images;
     for (int i = 0; i < count; ++i) {
-      images.push_back({fmt::format("p{:03}.png", i), scene.features[i]});
+      const std::string& name = scene.posed.images[i].name;
+      WritePhoto(photos_.path() / name, 640, 480);
+      images.push_back({name, scene.features[i]});
     }
     fake_.SetFeatures(images);
-    fake_.Set("models", fmt::format("0 {}\n", count));
+    fake_.SetModel(scene.Reconstruction(registered));
   }
   ColmapDatabase Matched() const { return ColmapDatabase(Workspace() / "database.db"); }
 };
@@ -52,14 +54,14 @@ TEST_F(Matching, ManyNumberedPhotosAreMatchedInSequence) {
 }
 
 TEST_F(Matching, FewPhotosAreAllMatched) {
-  WriteScene(6);
+  WriteScene(6, 6);
   Run();
   EXPECT_EQ(Matched().MatchedPairs().size(), 15u);
   EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "mapper"));
 }
 
 TEST_F(Matching, GuidedTakesTheMostSimilarPairsAndNeighbours) {
-  WriteScene(30);
+  WriteScene(30, 30);
   Run();
   const auto pairs = Matched().MatchedPairs();
   EXPECT_LT(pairs.size(), 30u * 29 / 2);
@@ -70,11 +72,13 @@ TEST_F(Matching, GuidedTakesTheMostSimilarPairsAndNeighbours) {
 }
 
 TEST_F(Matching, AllPairsFollowWhereTooFewPhotosAreRegistered) {
-  WriteScene(30);
-  fake_.Set("models", "0 20\n");
+  WriteScene(30, 20);
   Run();
   EXPECT_THAT(log_.Text(), HasSubstr("20 of 30 registered; matching the remaining pairs"));
-  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor", "mapper", "mapper"));
+  EXPECT_THAT(log_.Text(), HasSubstr("20 of 30 registered; trying again with more and finer"));
+  EXPECT_THAT(fake_.Commands(),
+              ElementsAre("feature_extractor", "mapper", "mapper", "feature_extractor", "mapper"));
+  EXPECT_THAT(fake_.Calls()[3], HasSubstr("--SiftExtraction.first_octave -1"));
   EXPECT_EQ(Matched().MatchedPairs().size(), 30u * 29 / 2);
   fake_.ForgetCalls();
   Run();
@@ -83,9 +87,11 @@ TEST_F(Matching, AllPairsFollowWhereTooFewPhotosAreRegistered) {
 
 // Names with spaces, which COLMAP's own lists of pairs cannot have.
 TEST_F(Matching, NamesMayContainSpaces) {
-  WriteScene(30);
-  fs::rename(photos_.path() / "p007.png", photos_.path() / "p 007.png");
-  Run();
+  for (int i = 0; i < 30; ++i) {
+    WritePhoto(photos_.path() / fmt::format("p {:03}.png", i), 64, 48);
+  }
+  fake_.Set("models", "0 30\n");
+  EXPECT_EQ(Run().images.size(), 30u);
   EXPECT_THAT(log_.Text(), Not(HasSubstr("warning")));
 }
 

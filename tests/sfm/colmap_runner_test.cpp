@@ -158,7 +158,7 @@ TEST_F(ColmapRunner, SecondCallSkipsFinishedStepsWithAMessage) {
 
 TEST_F(ColmapRunner, ChangesRepeatTheStepsThatDependOnThem) {
   WritePhotos(6);
-  fake_.Set("models", "0 6\n");
+  fake_.Set("models", "0 9\n");
   Run();
   const auto commands_after = [&](const auto& change) {
     fake_.ForgetCalls();

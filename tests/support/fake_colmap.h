@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sfm/colmap_text_writer.h"
 #include "tests/support/colmap_database_file.h"
 #include "tests/support/scratch_folder.h"
 
@@ -49,6 +50,12 @@ class FakeColmap {
   // What `feature_extractor` finds.
   void SetFeatures(const std::vector<DatabaseImage>& images) const {
     WriteColmapDatabase(folder_.path() / "features.db", images);
+  }
+  // A model that `mapper` writes. Its images are those of the test, by their names.
+  void SetModel(const PosedImages& model) const {
+    std::filesystem::create_directories(folder_.path() / "model");
+    sfm::WriteColmapText(model, folder_.path() / "model");
+    Set("do_mapper", "mkdir -p \"$output/0\"; cp \"$here/model/\"*.txt \"$output/0\"");
   }
   void Unset(const std::string& file) const { std::filesystem::remove(folder_.path() / file); }
 

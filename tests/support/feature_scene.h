@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spdlog/fmt/fmt.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -46,12 +48,30 @@ struct FeatureScene {
       axes.col(0) = Eigen::Vector3d::UnitY().cross(axes.col(2)).normalized();
       axes.col(1) = axes.col(2).cross(axes.col(0));
       PosedImage image;
-      image.name = "p" + std::to_string(100 + i) + ".png";
+      image.name = fmt::format("p{}.png", 100 + i);
       image.path = image.name;
       image.world_from_camera = Eigen::Translation3d(centre) * Eigen::Quaterniond(axes);
       posed.images.push_back(image);
       features.push_back(Observe(posed.images.back(), looks, options, generator));
     }
+  }
+
+  // The true reconstruction of the first images.
+  PosedImages Reconstruction(std::size_t images) const {
+    PosedImages model = posed;
+    model.images.resize(images);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      SparsePoint point;
+      point.x_in_world = points[p];
+      for (std::size_t i = 0; i < images; ++i) {
+        for (std::size_t f = 0; f < point_of_feature[i].size(); ++f) {
+          if (point_of_feature[i][f] != static_cast<int>(p)) continue;
+          point.track.push_back({static_cast<int>(i), features[i].positions[f].cast<double>()});
+        }
+      }
+      if (point.track.size() >= 2) model.points.push_back(point);
+    }
+    return model;
   }
 
   PosedImages posed;                               // without points

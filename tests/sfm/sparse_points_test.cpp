@@ -1,0 +1,121 @@
+#include "sfm/sparse_points.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
+
+#include "nerf/image/image_io.h"
+#include "tests/support/fake_colmap.h"
+#include "tests/support/feature_scene.h"
+#include "tests/support/input_error_of.h"
+
+namespace nerf::sfm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A capture with true poses and plain photographs, in which the fake COLMAP finds the features of a
+// scene.
+class SparsePointsOf : public testing::Test {
+ protected:
+  SparsePointsOf() {
+    std::vector<test::DatabaseImage> found;
+    for (std::size_t i = 0; i < scene_.posed.images.size(); ++i) {
+      PosedImage& image = scene_.posed.images[i];
+      image.path = photos_.path() / image.name;
+      WriteImage(image.path, Picture(1));
+      found.push_back({fmt::format("{:06}.png", i), scene_.features[i]});
+    }
+    fake_.SetFeatures(found);
+    posed_ = scene_.posed;
+  }
+  // Opaque on the right of the middle, and as much on the left.
+  static Image Picture(float left) {
+    Image picture(640, 480, 4);
+    for (int y = 0; y < 480; ++y) {
+      for (int x = 0; x < 640; ++x) {
+        const float pixel[4] = {0.8f, 0.4f, 0.2f, x < 320 ? left : 1.0f};
+        std::copy_n(pixel, 4, picture.At(x, y));
+      }
+    }
+    return picture;
+  }
+  SparsePointReport Find() { return FindSparsePoints(posed_, out_.path() / "points", {}); }
+  void ExpectNothingOnTheLeft() const {
+    EXPECT_GT(posed_.points.size(), 20u);
+    for (const SparsePoint& point : posed_.points) {
+      for (const TrackElement& element : point.track) EXPECT_GT(element.pixel.x(), 320);
+    }
+  }
+
+  test::FakeColmap fake_;
+  test::ScratchFolder photos_, out_;
+  test::FeatureScene scene_ = test::FeatureScene({.images = 8, .points = 250});
+  PosedImages posed_;
+};
+
+TEST_F(SparsePointsOf, GivenPosesAreTheTrueOnes) {
+  const SparsePointReport report = Find();
+  EXPECT_GT(report.points, 200);
+  EXPECT_EQ(posed_.points.size(), static_cast<std::size_t>(report.points));
+  EXPECT_GT(report.consistency.share, 0.95);
+  EXPECT_GT(report.track_length, 4);
+  for (const SparsePoint& point : posed_.points) {
+    double nearest = 1;
+    for (const Eigen::Vector3d& x : scene_.points) {
+      nearest = std::min(nearest, (x - point.x_in_world).norm());
+    }
+    EXPECT_LT(nearest, 0.03);
+    EXPECT_THAT(point.rgb, ElementsAre(204, 102, 51));
+  }
+  // The poses stay as they are.
+  for (std::size_t i = 0; i < posed_.images.size(); ++i) {
+    EXPECT_TRUE(
+        posed_.images[i].world_from_camera.isApprox(scene_.posed.images[i].world_from_camera, 0));
+  }
+  EXPECT_THAT(Describe(report), HasSubstr("sparse points"));
+}
+
+TEST_F(SparsePointsOf, ASecondCallSkipsWhatIsDone) {
+  const int points = Find().points;
+  EXPECT_THAT(fake_.Commands(), ElementsAre("feature_extractor"));
+  fake_.ForgetCalls();
+  EXPECT_EQ(Find().points, points);
+  EXPECT_THAT(fake_.Commands(), IsEmpty());
+}
+
+TEST_F(SparsePointsOf, WhatIsTransparentIsLeftOut) {
+  for (const PosedImage& image : posed_.images) WriteImage(image.path, Picture(0));
+  Find();
+  ExpectNothingOnTheLeft();
+}
+
+TEST_F(SparsePointsOf, WhatIsMaskedIsLeftOut) {
+  Image mask(640, 480, 1);
+  for (int y = 0; y < 480; ++y) std::fill_n(mask.At(320, y), 320, 1.0f);
+  WriteImage(photos_.path() / "mask.png", mask);
+  for (PosedImage& image : posed_.images) image.mask = photos_.path() / "mask.png";
+  Find();
+  ExpectNothingOnTheLeft();
+}
+
+TEST_F(SparsePointsOf, PosesThatContradictThePhotographsAreNone) {
+  for (PosedImage& image : posed_.images) {
+    image.world_from_camera.translation() = -image.world_from_camera.translation();
+  }
+  const SparsePointReport report = Find();
+  EXPECT_TRUE(report.consistency.Contradicts());
+  EXPECT_TRUE(posed_.points.empty());
+}
+
+TEST_F(SparsePointsOf, PhotographsOfAnotherSizeAreNamed) {
+  posed_.cameras[0].width = 320;
+  EXPECT_THAT(test::InputErrorOf([&] { Find(); }), AllOf(HasSubstr("p10"), HasSubstr("640x480")));
+}
+
+}  // namespace
+}  // namespace nerf::sfm
