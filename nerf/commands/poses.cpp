@@ -16,6 +16,7 @@
 #include "sfm/colmap_text_writer.h"
 #include "sfm/film.h"
 #include "sfm/masks.h"
+#include "sfm/pose_error.h"
 #include "sfm/pose_input.h"
 #include "sfm/sparse_points.h"
 #include "sfm/transforms_json.h"
@@ -30,6 +31,7 @@ struct PosesArguments {
   std::string output;
   int frames = 0;
   bool keep_poses = false;
+  std::string truth;
   sfm::ColmapOptions colmap;
 };
 
@@ -87,6 +89,13 @@ void KeepPoses(const PosesArguments& arguments, const fs::path& output) {
              "poses and points", output.string());
 }
 
+void PrintErrors(const PosedImages& found, const fs::path& truth) {
+  const sfm::PoseErrors errors = sfm::ComparePoses(found, sfm::ReadTransformsJson(truth));
+  fmt::print("{:<26}{:.3f} degrees, {:.3f} at most\n{:<26}{:.3f} %, {:.3f} % at most\n",
+             "rotation error, median", errors.rotation_median, errors.rotation_largest,
+             "position error, median", 100 * errors.position_median, 100 * errors.position_largest);
+}
+
 void RunPoses(const PosesArguments& arguments) {
   fs::path folder = fs::absolute(arguments.folder).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // a trailing slash
@@ -117,6 +126,7 @@ void RunPoses(const PosesArguments& arguments) {
   const PosedImages posed = sfm::PosesFromPhotos(photos, workspace, colmap, &report);
   sfm::WriteTransformsJson(posed, transforms);
   PrintReport(report, transforms);
+  if (!arguments.truth.empty()) PrintErrors(posed, arguments.truth);
 }
 
 }  // namespace
@@ -156,6 +166,12 @@ void AddPosesCommand(CLI::App& app) {
       "--keep-poses", arguments->keep_poses,
       "INPUT has poses (transforms.json, COLMAP, LLFF): keep them, compare them with\n"
       "the photographs, and find sparse points");
+  command
+      ->add_option(
+          "--truth", arguments->truth,
+          "transforms.json of true poses: print the errors of those that were found, after\n"
+          "alignment; positions relative to the cameras' mean distance from their centre")
+      ->check(CLI::ExistingFile);
   command->add_option("--threads", colmap.threads, "Threads; 0: all cores")->capture_default_str();
   command->footer(
       "After an interruption, run it again to continue; finished steps are skipped.\n"

@@ -64,7 +64,8 @@ void RunStudy(const StudyArguments& arguments) {
   TrainingDisplay display;
   const PipelineListener listener = [&](const PipelineEvent& event) { display(event); };
   const Config config = LoadConfig("balanced", {});
-  PreparedScene scene = PrepareScene(arguments.input, folder, config, listener);
+  PreparedScene scene = PrepareScene(arguments.input, folder, config.data, listener);
+  AddMissingPoints(scene, folder, config.data.points_share * options.budget, listener);
   InspectScene(config, {}, scene, listener);
   listener(CaptureInspected{&scene.inspection, {}, scene.inspection_seconds});
   // Events of single trainings are not shown.

@@ -13,7 +13,6 @@
 #include "nerf/effects/depth_supervision.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/found_points.h"
-#include "nerf/pipeline/training_resolution.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/splits.h"
 #include "sfm/colmap_model.h"
@@ -87,21 +86,24 @@ std::vector<double> PreparedScene::StopsOf(const std::vector<View>& train) const
   return stops.size() == train.size() ? stops : std::vector<double>();
 }
 
-PreparedScene PrepareScene(const fs::path& input, const fs::path& folder, const Config& config,
-                           const PipelineListener& listener) {
+PreparedScene PrepareScene(const fs::path& input, const fs::path& folder,
+                           const DataOptions& options, const PipelineListener& listener) {
   PreparedScene scene;
   const sfm::InputLocation location = sfm::FindInput(input);
   scene.from_photographs =
       location.kind == sfm::InputKind::kPhotos || location.kind == sfm::InputKind::kFilm;
-  scene.posed = FindPoses(location, folder, config.data, listener);
+  scene.posed = FindPoses(location, folder, options, listener);
   ReportMissing(scene.posed, listener);
-  if (!scene.from_photographs) {
-    FindMissingPoints(scene.posed, PointsPath(folder),
-                      config.data.points_share * TrainingSeconds(config.train), listener);
-  }
-  AssignSplits(scene.posed, config.data);
+  AssignSplits(scene.posed, options);
   scene.normalized_from_world = NormalizeScene(scene.posed);
   return scene;
+}
+
+void AddMissingPoints(PreparedScene& scene, const fs::path& folder, double most_seconds,
+                      const PipelineListener& listener) {
+  if (scene.from_photographs || !scene.posed.points.empty()) return;
+  FindMissingPoints(scene.posed, PointsPath(folder), most_seconds, listener);
+  scene.normalized_from_world = NormalizeScene(scene.posed);
 }
 
 void InspectScene(const Config& config, const std::set<std::string>& requested,

@@ -26,11 +26,14 @@ struct PreparedScene {
 };
 
 // Reads the poses of the input, or finds them with COLMAP in `folder`/colmap for plain photographs;
-// finds sparse points in `folder`/points where there are none (FindMissingPoints); assigns splits
-// and normalizes the scene.
+// assigns splits and normalizes the scene.
 // Throws InputError.
 PreparedScene PrepareScene(const std::filesystem::path& input, const std::filesystem::path& folder,
-                           const Config& config, const PipelineListener& listener);
+                           const DataOptions& options, const PipelineListener& listener);
+
+// Finds sparse points in `folder`/points for poses that were given without any (FindMissingPoints).
+void AddMissingPoints(PreparedScene& scene, const std::filesystem::path& folder,
+                      double most_seconds, const PipelineListener& listener);
 
 // Inspects the capture. If the scene is bounded, changes the normalized frame.
 //   requested  effects that the user has decided, as in `config`

@@ -130,9 +130,11 @@ void TrainingSession::PrepareCapture() {
   config_ = ConfigWithDecisions(request_.preset);
   CheckRunFolder();
   EstimateWait();  // fails before a run folder is created
-  scene_ = PrepareScene(request_.input, request_.run, config_, listener_);
+  scene_ = PrepareScene(request_.input, request_.run, config_.data, listener_);
   RequireValidation();
   ChooseResolution();
+  AddMissingPoints(scene_, request_.run, config_.data.points_share * TrainingSeconds(config_.train),
+                   listener_);
   if (request_.effects.inspect) {
     const auto requested = NamedEffects(request_.preset, request_.assignments);
     InspectScene(config_, requested, scene_, listener_);

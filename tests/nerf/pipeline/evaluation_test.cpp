@@ -34,7 +34,7 @@ TEST(Evaluation, OfWholeViewsAgreesWithTheSampleOfPixelsThatTrialsMeasure) {
   synthetic::WriteSample(folder.path() / "sample", options);
   const Config config = test::TinyConfig(150);
   PreparedScene scene = PrepareScene(folder.path() / "sample/truth/transforms.json", folder.path(),
-                                     config, IgnoreEvents);
+                                     config.data, IgnoreEvents);
   for (PosedImage& image : scene.posed.images) {
     if (image.split == Split::kTest) image.split = Split::kValidation;
   }

@@ -29,7 +29,7 @@ PreparedScene SmallSample(const test::ScratchFolder& folder, int views) {
   synthetic::WriteSample(folder.path() / "sample", options);
   const Config config = LoadConfig("balanced", {});
   PreparedScene scene = PrepareScene(folder.path() / "sample/truth/transforms.json", folder.path(),
-                                     config, IgnoreEvents);
+                                     config.data, IgnoreEvents);
   InspectScene(config, {}, scene, IgnoreEvents);
   return scene;
 }
