@@ -194,14 +194,27 @@ std::vector<FeatureMatch> ColmapDatabase::ReadFrom(const std::string& table, Ima
     SQLite::Statement read(database, "SELECT rows, data FROM " + table + " WHERE pair_id = ?");
     read.bind(1, PairId(pair));
     if (!read.executeStep()) return matches;
-    matches.resize(read.getColumn(0).getUInt());
     const SQLite::Column blob = read.getColumn(1);
-    if (static_cast<std::size_t>(blob.getBytes()) != matches.size() * sizeof(FeatureMatch)) {
+    const auto bytes = static_cast<std::size_t>(blob.getBytes());
+    if (read.getColumn(0).getInt64() * static_cast<std::int64_t>(sizeof(FeatureMatch)) !=
+        static_cast<std::int64_t>(bytes)) {
       throw SQLite::Exception("matches are truncated");
     }
+    matches.resize(bytes / sizeof(FeatureMatch));
     if (!matches.empty()) std::memcpy(matches.data(), blob.getBlob(), blob.getBytes());
     if (ids_[pair.first] > ids_[pair.second]) {
       for (FeatureMatch& match : matches) std::swap(match.first, match.second);
+    }
+    const auto rows = [&](int image) {
+      SQLite::Statement count(database, "SELECT rows FROM keypoints WHERE image_id = ?");
+      count.bind(1, ids_[image]);
+      return count.executeStep() ? count.getColumn(0).getUInt() : 0;
+    };
+    const std::uint32_t first = rows(pair.first), second = rows(pair.second);
+    for (const FeatureMatch& match : matches) {
+      if (match.first >= first || match.second >= second) {
+        throw SQLite::Exception("has matches of features that it does not have");
+      }
     }
     return matches;
   });

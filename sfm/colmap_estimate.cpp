@@ -19,6 +19,7 @@ constexpr double kGrowth = 0.7;
 
 // As ColmapSteps matches: all by 512 features, and twelve partners of each by all of theirs.
 constexpr double kCoarseCost = (512 / kUsualFeatures) * (512 / kUsualFeatures);
+constexpr double kManyCompared = 200;  // of more photographs fewer features are compared
 constexpr int kPartners = 12, kPairsInSequence = 25, kExhaustiveMost = 20;
 
 double MegapixelsOf(int longest_side, const ColmapOptions& options) {
@@ -41,7 +42,8 @@ double EstimatePointSeconds(int photographs, int longest_side, const ColmapOptio
   if (options.matcher == "sequential") {
     matched = std::min(pairs, kPairsInSequence * count);
   } else if (options.matcher != "exhaustive" && photographs > kExhaustiveMost) {
-    matched = kCoarseCost * pairs + std::min(pairs, kPartners * count);
+    matched = kCoarseCost * std::min(1.0, kManyCompared / count) * pairs +
+              std::min(pairs, kPartners * count);
   }
   const double features = FeaturesOf(longest_side, options);
   const double per_pair = kMatchPerPair * std::pow(features / kUsualFeatures, 2);

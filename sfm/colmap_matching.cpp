@@ -16,6 +16,9 @@ constexpr int kSequenceOverlap = 20;  // neighbours
 constexpr int kPairsEach = 12;
 constexpr int kNeighbours = 2;
 
+// Instead of all pairs where these would be too many: time and memory grow with the photographs.
+constexpr int kMostForAllPairs = 300, kManyPairsEach = 60;
+
 }  // namespace
 
 void ColmapSteps::Match(const std::string& matcher) {
@@ -27,15 +30,20 @@ void ColmapSteps::Match(const std::string& matcher) {
     if (matcher == "sequential") {
       pairs = SequentialPairs(count, kSequenceOverlap);
     } else if (matcher == "guided") {
-      ProgressLine line("comparing photographs", count);
-      pairs = MostSimilarPairs(
-          CompareAllPairs(database, options_.threads, [&](int done) { line.Update(done); }), count,
-          kPairsEach, kNeighbours);
+      pairs = SimilarPairs(database, kPairsEach);
     } else {
       pairs = AllPairs(count);
     }
     MatchInParts("matches", pairs, database);
   });
+}
+
+std::vector<ImagePair> ColmapSteps::SimilarPairs(const ColmapDatabase& database, int each) const {
+  const int count = static_cast<int>(database.Names().size());
+  ProgressLine line("comparing photographs", count);
+  return MostSimilarPairs(
+      CompareAllPairs(database, options_.threads, [&](int done) { line.Update(done); }), count,
+      each, kNeighbours);
 }
 
 void ColmapSteps::MatchInParts(const std::string& step, const std::vector<ImagePair>& pairs,
@@ -48,7 +56,11 @@ void ColmapSteps::MatchInParts(const std::string& step, const std::vector<ImageP
 void ColmapSteps::MatchAllAndMap() {
   Step("matches_all", nlohmann::json::object(), Database(), [&](StepLedger::State) {
     ColmapDatabase database(Database());
-    MatchInParts("matches_all", AllPairs(static_cast<int>(database.Names().size())), database);
+    const int count = static_cast<int>(database.Names().size());
+    MatchInParts(
+        "matches_all",
+        count <= kMostForAllPairs ? AllPairs(count) : SimilarPairs(database, kManyPairsEach),
+        database);
   });
   MapAgain("mapper_all", {});
 }

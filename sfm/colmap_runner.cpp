@@ -73,11 +73,15 @@ std::vector<std::string> RestorePhotographs(const std::vector<Photo>& photos,
 }
 
 void WarnAbout(const ColmapReport& report) {
-  if (report.largest_model > report.registered) {
+  if (report.misplaced > 0) {
     spdlog::warn(
-        "{} of {} photographs that COLMAP registered are left out: their poses contradict their "
-        "matches",
-        report.largest_model - report.registered, report.largest_model);
+        "{} photographs that COLMAP registered are left out: their matches contradict "
+        "their poses",
+        report.misplaced);
+  }
+  if (report.largest_broken > report.registered) {
+    spdlog::warn("a model of {} photographs is not trusted; one of {} is taken instead",
+                 report.largest_broken, report.registered);
   }
   if (report.verdict.trust != Trust::kGood) {
     spdlog::warn("the poses are {}: {}", NameOf(report.verdict.trust), report.verdict.reason);
@@ -131,7 +135,8 @@ PosedImages PosesFromPhotos(const fs::path& photo_folder, const fs::path& worksp
   PosedImages& posed = found.posed;
   r.seconds = found.seconds;
   r.verdict = found.verdict;
-  r.largest_model = found.largest;
+  r.misplaced = found.misplaced;
+  r.largest_broken = found.largest_broken;
   r.registered = static_cast<int>(posed.images.size());
   if (r.registered < kFewestRegistered || r.registered < kFewestFraction * r.photos) {
     throw InputError("{}: COLMAP registered only {} of {} photographs; {}{}; see {}",

@@ -18,7 +18,8 @@ struct ColmapReport {
   int points = 0;
   double mean_reprojection_error = 0;  // pixels, mean over the points
   ReconstructionVerdict verdict;
-  int largest_model = 0;              // photographs in the largest model, which may not be trusted
+  int misplaced = 0;       // photographs that were left out: their matches contradict their poses
+  int largest_broken = 0;  // photographs in the largest model that was not trusted
   std::vector<SkippedPhoto> skipped;  // photographs that cannot be read
   std::vector<std::string> unregistered;
   std::vector<std::pair<std::string, double>> seconds;  // per step, of the run that executed it

@@ -25,8 +25,8 @@ const std::vector<std::string> kRelaxedMapping = {
     "--Mapper.abs_pose_min_num_inliers", "15", "--Mapper.min_num_matches",    "10"};
 
 // The mapper spends most of its time on adjusting again what hardly moves any more. These bounds
-// halve that time and change poses by less than their error (docs/poses.md); a global adjustment
-// still ends the mapping. Newer names of an option follow the older one.
+// halve that time and change poses by less than their error (docs/benchmarks.md); a global
+// adjustment still ends the mapping. Newer names of an option follow the older one.
 struct MapperBound {
   std::vector<std::string> names;
   const char* value;
@@ -156,10 +156,6 @@ void ColmapSteps::MapAgain(const std::string& step, const Arguments& thresholds)
     }
     RemoveAll(attempt);
   });
-}
-
-int ColmapSteps::Registered() const {
-  return ModelsIn(Sparse()).empty() ? 0 : CountRegistered(LargestModel(Sparse()));
 }
 
 std::vector<fs::path> ColmapSteps::Models() const {

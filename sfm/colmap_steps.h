@@ -40,13 +40,12 @@ class ColmapSteps {
   // Writes the models to sparse/0, sparse/1, ..., one for each part of the scene that could not be
   // connected to the others.
   void Map();
-  // Matches the pairs that guided matching skipped and maps again. Adds its models to those of Map.
+  // Matches the pairs that guided matching skipped (of more than 300 photographs, more of the
+  // similar ones) and maps again. Adds its models to those of Map.
   void MatchAllAndMap();
   // Maps again with lower thresholds. Adds its models to those of Map.
   void MapRelaxed();
 
-  // The number of registered photographs of the largest model; 0 where there is no model.
-  int Registered() const;
   // The models that were found, those with most photographs first.
   std::vector<std::filesystem::path> Models() const;
   PosedImages ReadModel(const std::filesystem::path& model) const;
@@ -76,6 +75,7 @@ class ColmapSteps {
   void RunOrThrow(const std::string& step, const std::string& command,
                   const Arguments& arguments) const;
   int FirstOctave() const;
+  std::vector<ImagePair> SimilarPairs(const ColmapDatabase& database, int each) const;
   void MatchInParts(const std::string& step, const std::vector<ImagePair>& pairs,
                     ColmapDatabase& database) const;
   void MapAgain(const std::string& step, const Arguments& thresholds);

@@ -26,7 +26,7 @@ std::vector<Eigen::Matrix3d> FundamentalOfSeven(std::span<const PointPair> pairs
 std::optional<Eigen::Matrix3d> FundamentalOfMany(std::span<const PointPair> pairs);
 
 struct EpipolarOptions {
-  double max_error = 4;  // pixels; the figures are those of COLMAP's verification
+  double max_error = 4;  // pixels; these four figures are those of COLMAP's verification
   double confidence = 0.999;
   double min_inlier_ratio = 0.25;
   int min_inliers = 15;

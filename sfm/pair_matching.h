@@ -23,7 +23,7 @@ std::vector<std::pair<ImagePair, int>> CompareAllPairs(
     const ColmapDatabase& database, int threads, const std::function<void(int done)>& progress);
 
 // Matches pairs by all their features and writes the results to the database in parts, so that an
-// interrupted call continues: pairs that are there are skipped. In memory are the features of few
+// interrupted call continues: pairs that are there are skipped. In memory are the features of a few
 // hundred photographs.
 //   pairs     sorted
 //   progress  called with the number of pairs done

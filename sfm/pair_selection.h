@@ -13,7 +13,7 @@ namespace nerf::sfm {
 std::vector<ImagePair> AllPairs(int count);
 
 // Each with its next `overlap` photographs, and with those at distances of powers of two up to
-// 2^overlap.
+// 2^(overlap - 1).
 std::vector<ImagePair> SequentialPairs(int count, int overlap);
 
 // For each photograph the `each` pairs with most matches, and those with the `neighbours` next

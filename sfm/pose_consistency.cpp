@@ -21,6 +21,7 @@ constexpr double kMaxError = 4;       // pixels
 constexpr std::size_t kFewest = 100;  // matches
 constexpr double kContradicts = 0.5;  // less than this share
 constexpr double kFits = 0.85;        // more than this share
+constexpr double kSamePlace = 1e-6;   // of the extent of the cameras
 constexpr int kMostOfPair = 60;       // matches that are looked at, of a pair
 
 // A match as two directions in the axes of the cameras.
@@ -33,11 +34,21 @@ struct Rays {
 std::vector<Rays> RaysOf(const PosedImages& posed, std::span<const SeenTwice> matches,
                          double max_error) {
   std::vector<Rays> rays;
+  double extent = 0;  // cameras nearer to each other tell nothing about their poses
+  for (const PosedImage& image : posed.images) {
+    extent = std::max(extent, (image.world_from_camera.translation() -
+                               posed.images.front().world_from_camera.translation())
+                                  .norm());
+  }
   for (const SeenTwice& pair : matches) {
+    const double between = (posed.images[pair.images.first].world_from_camera.translation() -
+                            posed.images[pair.images.second].world_from_camera.translation())
+                               .norm();
+    if (!(between > kSamePlace * extent)) continue;
     const Camera& a = posed.cameras[posed.images[pair.images.first].camera];
     const Camera& b = posed.cameras[posed.images[pair.images.second].camera];
     const double max_angle = max_error / std::min(FocalLength(a), FocalLength(b));
-    const std::size_t step = std::max<std::size_t>(1, pair.in_first.size() / kMostOfPair);
+    const std::size_t step = (pair.in_first.size() + kMostOfPair - 1) / kMostOfPair;
     for (std::size_t i = 0; i < pair.in_first.size(); i += step) {
       const auto first = DirectionFromPixel(a, pair.in_first[i]);
       const auto second = DirectionFromPixel(b, pair.in_second[i]);
@@ -66,6 +77,8 @@ bool Fits(const Rays& rays, const Mistake& mistake) {
   };
   if (angle_to_plane(second, first) > rays.max_angle) return false;
   if (angle_to_plane(first, second) > rays.max_angle) return false;
+  // Of what is far away, the rays are parallel but for their errors.
+  if (first.cross(second).norm() <= 2 * rays.max_angle) return first.dot(second) > 0;
   return NearestToRays(a.translation(), first, b.translation(), second).has_value();
 }
 

@@ -43,12 +43,12 @@ struct PoseConsistency {
   bool IsDoubtful() const { return Contradicts() || !looks_like.empty(); }
 };
 
-// Compares the poses with matches, and where they do not fit, tries common mistakes: poses
-// inverted, axes of the camera or the world flipped, another focal length, names that are shifted
-// or reversed.
 // One line, without the name of the input.
 std::string Describe(const PoseConsistency& consistency);
 
+// Compares the poses with matches, and where they do not fit, tries common mistakes: poses
+// inverted, axes of the camera or the world flipped, another focal length, names that are shifted
+// or reversed.
 PoseConsistency CheckPoses(const PosedImages& posed, std::span<const SeenTwice> matches);
 
 }  // namespace nerf::sfm

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -22,7 +23,8 @@ constexpr double kFits = 0.85, kHardlyFits = 0.65;           // share of the mat
 constexpr double kMisplaced = 0.8;                           // of the matches of a photograph
 constexpr double kFewMisplaced = 0.1, kManyMisplaced = 0.3;  // of the photographs
 constexpr double kFewObservations = 60;                      // in a photograph
-constexpr double kNarrow = 2.5;                              // degrees
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNarrow = 2.5;  // degrees
 constexpr double kFarRadius = 8, kMostFar = 0.5;
 
 double LargestAngle(const PosedImages& model, const SparsePoint& point) {
@@ -82,7 +84,7 @@ ReconstructionFigures FiguresOf(const PosedImages& model, std::span<const SeenTw
     const auto image = static_cast<int>(&fit - fits.data());
     if (fit.fitting < kMisplaced * fit.matches) figures.misplaced.push_back(image);
   }
-  figures.fitting = all > 0 ? static_cast<double>(fitting) / all : 0;
+  figures.fitting = all > 0 ? static_cast<double>(fitting) / all : kUnknown;
   return figures;
 }
 
@@ -116,7 +118,8 @@ std::vector<SeenTwice> MatchesOf(const PosedImages& model, const ColmapDatabase&
 
 ReconstructionVerdict JudgeReconstruction(const PosedImages& model,
                                           std::span<const SeenTwice> matches) {
-  ReconstructionVerdict verdict{Trust::kGood, FiguresOf(model, matches), ""};
+  ReconstructionVerdict verdict;
+  verdict.figures = FiguresOf(model, matches);
   if (matches.empty()) return verdict;
   const ReconstructionFigures& f = verdict.figures;
   const auto worsen = [&](Trust trust, const std::string& reason) {
@@ -142,6 +145,7 @@ ReconstructionVerdict JudgeReconstruction(const PosedImages& model,
                        "beside them",
                        kFewObservations));
   }
+  verdict.features_may_help = verdict.trust != Trust::kGood;
   if (f.angle < kNarrow) {
     worsen(Trust::kDoubtful, fmt::format("the rays to half of the points differ by less than {} "
                                          "degrees; move the camera, do not only turn it",
@@ -187,9 +191,10 @@ std::string_view NameOf(Trust trust) {
 
 std::string Describe(const ReconstructionVerdict& verdict) {
   const ReconstructionFigures& f = verdict.figures;
+  if (std::isnan(f.fitting)) return "there are no matches to judge them by";
   std::string text = fmt::format(
       "{}: {:.0f} % of the matches fit the poses, {:.0f} points in a photograph, each in {:.1f} "
-      "photographs, under {:.0f} degrees",
+      "photographs, seen at angles of {:.0f} degrees",
       NameOf(verdict.trust), 100 * f.fitting, f.observations, f.track_length, f.angle);
   return verdict.reason.empty() ? text : text + "; " + verdict.reason;
 }

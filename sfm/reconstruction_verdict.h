@@ -29,6 +29,7 @@ struct ReconstructionFigures {
 
 struct ReconstructionVerdict {
   Trust trust = Trust::kGood;
+  bool features_may_help = false;  // more and finer ones, against what is wrong
   ReconstructionFigures figures;
   std::string reason;  // why it is not good, with what to photograph next time; empty if it is
 };
@@ -46,7 +47,7 @@ ReconstructionVerdict JudgeReconstruction(const PosedImages& model,
 PosedImages WithoutImages(const PosedImages& model, const std::vector<int>& images);
 
 std::string_view NameOf(Trust trust);
-// "good: 98 % of the matches fit the poses, 1234 points of 3 to 6.2 photographs, ..."
+// "good: 98 % of the matches fit the poses, 300 points in a photograph, ...", one line.
 std::string Describe(const ReconstructionVerdict& verdict);
 
 }  // namespace nerf::sfm

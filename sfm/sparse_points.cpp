@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/image/image_convert.h"
@@ -121,7 +122,14 @@ Matched ReadMatched(const PosedImages& posed, const std::vector<Photo>& photos,
   Matched matched;
   std::vector<Features> features;
   for (std::size_t i = 0; i < database.Names().size(); ++i) {
-    matched.image_of.push_back(NumberOf(photo_of.at(database.Names()[i])->name));
+    const auto photo = photo_of.find(database.Names()[i]);
+    if (photo == photo_of.end()) {
+      throw InputError(
+          "{}: has features of {}, which is none of the photographs; remove the folder "
+          "for points and run again",
+          posed.source.string(), database.Names()[i]);
+    }
+    matched.image_of.push_back(NumberOf(photo->second->name));
     features.push_back(database.ReadFeatures(static_cast<int>(i)));
   }
   matched.features.resize(features.size());
@@ -187,6 +195,7 @@ std::vector<SparsePoint> TriangulateAll(const PosedImages& posed, const Matched&
 SparsePointReport FindSparsePoints(PosedImages& posed, const fs::path& workspace,
                                    const ColmapOptions& options) {
   const Stopwatch watch;
+  options.Check();
   const std::vector<PhotoFile> files = NumberedFiles(posed);
   const std::vector<Photo> photos = PhotosOf(posed, files, options.threads);
   const std::vector<ColmapImage> plan = PlanColmapImages(photos);

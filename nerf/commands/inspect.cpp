@@ -1,12 +1,12 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "nerf/base/input_error.h"
@@ -21,6 +21,7 @@
 #include "sfm/masks.h"
 #include "sfm/photo_folder.h"
 #include "sfm/pose_input.h"
+#include "sfm/reconstruction.h"
 
 namespace nerf {
 namespace {
@@ -39,6 +40,20 @@ std::string EffectTable() {
     table += fmt::format("  {:<17}  {:<14}  {}\n", effect->name, effect->stage, effect->help);
   }
   return table;
+}
+
+nlohmann::json JsonFrom(const sfm::ReconstructionVerdict& verdict) {
+  const sfm::ReconstructionFigures& f = verdict.figures;
+  return {{"verdict", sfm::NameOf(verdict.trust)},
+          {"reason", verdict.reason},
+          {"photographs", f.registered},
+          {"misplaced", f.misplaced.size()},
+          {"points", f.points},
+          {"points_in_a_photograph", f.observations},
+          {"photographs_of_a_point", f.track_length},
+          {"angle_degrees", f.angle},
+          {"share_of_matches_that_fit", f.fitting},
+          {"share_of_points_far_away", f.far}};
 }
 
 nlohmann::json JsonFrom(const PosedImages& posed, const Inspection& inspection) {
@@ -74,11 +89,17 @@ PosedImages WithoutPoses(const std::filesystem::path& folder) {
   return photographs;
 }
 
-// A folder for COLMAP's files, which is removed with it.
+// A temporary folder, which is removed with it.
 class WorkFolder {
  public:
-  WorkFolder()
-      : path_(std::filesystem::temp_directory_path() / fmt::format("nerf-inspect-{}", getpid())) {}
+  WorkFolder() {
+    std::error_code error;
+    std::string path = (std::filesystem::temp_directory_path(error) / "nerf-XXXXXX").string();
+    if (error || mkdtemp(path.data()) == nullptr) {
+      throw InputError("{}: cannot be created; set TMPDIR to a folder that can be written", path);
+    }
+    path_ = path;
+  }
   ~WorkFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
@@ -91,18 +112,36 @@ class WorkFolder {
   std::filesystem::path path_;
 };
 
-// Finds sparse points for poses without any.
+// Finds sparse points for poses without any, if that takes minutes at most.
 void FindPoints(PosedImages& posed) {
-  const WorkFolder folder;
-  FindMissingPoints(posed, folder.Path(), std::numeric_limits<double>::infinity(),
-                    [](const PipelineEvent& event) {
-                      if (const auto* warning = std::get_if<Warning>(&event)) {
-                        spdlog::warn("{}", warning->text);
-                      } else if (const auto* found = std::get_if<PointsFound>(&event)) {
-                        spdlog::info("{}; {}", sfm::Describe(found->report.consistency),
-                                     sfm::Describe(found->report));
-                      }
-                    });
+  constexpr double kMostSeconds = 600;
+  if (!posed.points.empty()) return;
+  const auto say = [](const PipelineEvent& event) {
+    if (const auto* warning = std::get_if<Warning>(&event)) {
+      spdlog::warn("{}", warning->text);
+    } else if (const auto* found = std::get_if<PointsFound>(&event)) {
+      spdlog::info("{}; {}", sfm::Describe(found->report.consistency),
+                   sfm::Describe(found->report));
+    }
+  };
+  try {
+    const WorkFolder folder;
+    FindMissingPoints(posed, folder.Path(), kMostSeconds, say);
+  } catch (const InputError& error) {
+    spdlog::warn("no sparse points: {}", error.what());
+  }
+}
+
+// The verdict on poses that nerf has found; nothing for others.
+std::optional<sfm::ReconstructionVerdict> JudgePoses(const sfm::InputLocation& location,
+                                                     const PosedImages& posed) {
+  if (location.kind != sfm::InputKind::kColmap) return std::nullopt;
+  try {
+    return sfm::JudgeAgain(location.model, posed);
+  } catch (const InputError& error) {
+    spdlog::warn("{}", error.what());
+    return std::nullopt;
+  }
 }
 
 void RunInspect(const InspectArguments& arguments) {
@@ -131,11 +170,13 @@ void RunInspect(const InspectArguments& arguments) {
   }
   if (!inspection.warning.empty()) spdlog::warn("{}", inspection.warning);
   if (!arguments.picture.empty()) WriteImage(arguments.picture, PictureOf(inspection));
+  const auto poses = JudgePoses(location, posed);
   if (arguments.json) {
-    fmt::print(
-        "{}\n",
-        JsonFrom(posed, inspection).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    nlohmann::json root = JsonFrom(posed, inspection);
+    if (poses) root["poses"] = JsonFrom(*poses);
+    fmt::print("{}\n", root.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
+    if (poses) fmt::print("poses: {}\n", sfm::Describe(*poses));
     fmt::print("{}", TableOf(inspection.verdicts));
   }
 }

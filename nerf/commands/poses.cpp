@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/training_display.h"
+#include "nerf/pipeline/prepared_scene.h"
 #include "sfm/colmap_runner.h"
 #include "sfm/colmap_text_writer.h"
 #include "sfm/film.h"
@@ -58,32 +60,67 @@ void PrintReport(const sfm::ColmapReport& report, const fs::path& transforms) {
   row("poses", transforms.string());
 }
 
-// The photographs of a model by the names that it has: a link to their folder.
-void LinkImages(const PosedImages& posed, const fs::path& link) {
+// The folder of the photographs, to which their names are relative.
+fs::path ImageFolder(const PosedImages& posed) {
   const fs::path root = RootOf(posed.images.front());
   for (const PosedImage& image : posed.images) {
     if (RootOf(image) == root) continue;
     throw InputError("{}: its photographs are in several folders, {} and {}; put them into one",
                      posed.source.string(), root.string(), RootOf(image).string());
   }
-  std::error_code error;
-  if (fs::is_symlink(link)) fs::remove(link, error);
-  fs::create_directory_symlink(fs::absolute(root), link, error);
-  if (error) throw InputError("{}: cannot be made: {}", link.string(), error.message());
+  return fs::absolute(root).lexically_normal();
+}
+
+// Refuses an output that would replace something, before any work.
+void CheckOutput(const fs::path& output, const fs::path& photographs) {
+  const fs::path link = fs::absolute(output / "images").lexically_normal();
+  if (link == photographs || (fs::exists(link) && !fs::is_symlink(link))) {
+    throw InputError("{}: holds photographs; choose another folder with -o", link.string());
+  }
+  if (fs::exists(output / "transforms.json")) {
+    throw InputError(
+        "{}: has a transforms.json, which would be read instead of the points; choose "
+        "another folder with -o",
+        output.string());
+  }
+}
+
+// What a COLMAP model cannot say is lost, and better said.
+void WarnAboutLosses(const PosedImages& posed) {
+  const auto any = [&](auto has) { return std::ranges::any_of(posed.images, has); };
+  const bool splits = any([](const PosedImage& i) { return i.split != Split::kUnspecified; });
+  const bool masks = any([](const PosedImage& i) { return !i.mask.empty(); });
+  const bool turned = any([](const PosedImage& i) { return i.upright_by_exif; });
+  if (!splits && !masks && !turned) return;
+  spdlog::warn(
+      "{}: the COLMAP model does not keep its{}{}{}; nerf train on the input itself finds "
+      "points and keeps them",
+      posed.source.string(), splits ? " division into training and test views" : "",
+      masks ? " masks" : "", turned ? " rotation by EXIF" : "");
 }
 
 // Finds sparse points for poses that are given.
 void KeepPoses(const PosesArguments& arguments, const fs::path& output) {
+  arguments.colmap.Check();
   PosedImages posed = sfm::ReadPosedInput(sfm::FindInput(arguments.folder));
-  for (const std::string& warning : posed.warnings) spdlog::warn("{}", warning);
+  TrainingDisplay display;
+  ReportMissing(posed, [&](const PipelineEvent& event) { display(event); });
   sfm::FindMasks(posed);
+  const fs::path photographs = ImageFolder(posed);
+  CheckOutput(output, photographs);
+  WarnAboutLosses(posed);
   const fs::path workspace = output / "points", model = output / "sparse" / "0";
   const sfm::SparsePointReport report = sfm::FindSparsePoints(posed, workspace, arguments.colmap);
   if (report.consistency.Contradicts()) {
     throw InputError("{}: {}", posed.source.string(), sfm::Describe(report.consistency));
   }
   MakeOutputFolder(model);
-  LinkImages(posed, output / "images");
+  std::error_code error;
+  fs::remove(output / "images", error);  // of an earlier call
+  fs::create_directory_symlink(photographs, output / "images", error);
+  if (error) {
+    throw InputError("{}: cannot be made: {}", (output / "images").string(), error.message());
+  }
   sfm::WriteColmapText(posed, model);
   fmt::print("{}\n{}\n{:<26}{}\n", sfm::Describe(report.consistency), sfm::Describe(report),
              "poses and points", output.string());
@@ -101,6 +138,7 @@ void RunPoses(const PosesArguments& arguments) {
   if (!folder.has_filename()) folder = folder.parent_path();  // a trailing slash
   const std::optional<fs::path> film = sfm::FindFilm(arguments.folder);
   if (sfm::HasFilmExtension(folder)) folder.replace_extension();
+  if (folder.extension() == ".json") folder = folder.parent_path();
   const fs::path output = arguments.output.empty()
                               ? fs::path("runs") / (folder.filename().string() + "-poses")
                               : fs::path(arguments.output);

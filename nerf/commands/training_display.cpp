@@ -76,6 +76,10 @@ void TrainingDisplay::Show(const PosesFound& event) {
 }
 
 void TrainingDisplay::Show(const PointsFound& event) {
+  if (event.report.consistency.IsDoubtful()) {  // which was warned of
+    Print("{}\n", sfm::Describe(event.report));
+    return;
+  }
   Print("poses: {}; {}\n", sfm::Describe(event.report.consistency), sfm::Describe(event.report));
 }
 

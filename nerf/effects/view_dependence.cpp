@@ -26,7 +26,7 @@ constexpr double kInconclusive = 0.4;
 }  // namespace
 
 Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit,
-                            double sighted_share) {
+                            const PosedImages& posed) {
   struct Spread {
     std::vector<double> residual, contrast;
   };
@@ -53,7 +53,7 @@ Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit,
                fmt::format("the colour of {:.1f} % of the points changes with the view by more "
                            "than their texture explains (threshold {:.0f} %)",
                            100 * share, 100 * kViewDependentShare));
-  if (!verdict.on && sighted_share < kFewSightings) {
+  if (!verdict.on && SightedShare(posed) < kFewSightings) {
     verdict.most_confidence = kInconclusive;
     verdict.evidence += ", but glossy places rarely match";
   }
@@ -67,7 +67,7 @@ const EffectDescriptor kViewDependenceEffect = {
     .stage = "colour network",
     .judge =
         [](const CaptureEvidence& e) {
-          return e.HasTracks() ? JudgeViewDependence(e.colors, e.fit, SightedShare(*e.posed))
+          return e.HasTracks() ? JudgeViewDependence(e.colors, e.fit, *e.posed)
                                : Undecided(kViewDependenceEffect.name, e.unknown_because);
         },
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nerf/effects/effect.h"
+#include "nerf/scene/posed_images.h"
 
 namespace nerf {
 
@@ -27,9 +28,9 @@ constexpr ColorModel ColorModelOf(bool view_dependence) {
 // explains (an error of a pixel, another slant). Undecided where too few points have long tracks.
 // Where most sightings of points are missing, few changing points are no evidence that there is no
 // gloss: the verdict is inconclusive.
-//   sighted_share  SightedShare
+//   posed  with the points, for SightedShare
 Verdict JudgeViewDependence(const TrackColors& colors, const PhotographFit& fit,
-                            double sighted_share);
+                            const PosedImages& posed);
 
 extern const EffectDescriptor kViewDependenceEffect;
 

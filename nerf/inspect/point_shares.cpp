@@ -41,13 +41,19 @@ PointShares SharesOfPoints(const PosedImages& posed,
 }
 
 double SightedShare(const PosedImages& posed) {
+  constexpr std::size_t kSample = 3000;  // points
+  const std::size_t step = (posed.points.size() + kSample - 1) / kSample;
+  std::vector<Eigen::Isometry3d> camera_from_world;
+  for (const PosedImage& image : posed.images) {
+    camera_from_world.push_back(image.world_from_camera.inverse());
+  }
   std::vector<double> shares;
-  for (const SparsePoint& point : posed.points) {
+  for (std::size_t p = 0; p < posed.points.size(); p += step) {
+    const SparsePoint& point = posed.points[p];
     int in_frame = 0;
-    for (const PosedImage& image : posed.images) {
-      const Camera& camera = posed.cameras[image.camera];
-      const auto pixel =
-          PixelFromPoint(camera, image.world_from_camera.inverse() * point.x_in_world);
+    for (std::size_t i = 0; i < posed.images.size(); ++i) {
+      const Camera& camera = posed.cameras[posed.images[i].camera];
+      const auto pixel = PixelFromPoint(camera, camera_from_world[i] * point.x_in_world);
       in_frame += pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < camera.width &&
                   pixel->y() < camera.height;
     }

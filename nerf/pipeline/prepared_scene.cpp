@@ -13,6 +13,7 @@
 #include "nerf/effects/depth_supervision.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/found_points.h"
+#include "nerf/pipeline/training_resolution.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/splits.h"
 #include "sfm/colmap_model.h"
@@ -97,6 +98,12 @@ PreparedScene PrepareScene(const fs::path& input, const fs::path& folder,
   AssignSplits(scene.posed, options);
   scene.normalized_from_world = NormalizeScene(scene.posed);
   return scene;
+}
+
+double PointSeconds(const Config& config) {
+  const double share = config.data.points_share;
+  if (share == 0 || config.train.time_budget > 0) return share * config.train.time_budget;
+  return TrainingSeconds(config.train);
 }
 
 void AddMissingPoints(PreparedScene& scene, const fs::path& folder, double most_seconds,

@@ -31,6 +31,10 @@ struct PreparedScene {
 PreparedScene PrepareScene(const std::filesystem::path& input, const std::filesystem::path& folder,
                            const DataOptions& options, const PipelineListener& listener);
 
+// How long finding sparse points may take: data.points_share of a time budget, else as long as the
+// training.
+double PointSeconds(const Config& config);
+
 // Finds sparse points in `folder`/points for poses that were given without any (FindMissingPoints).
 void AddMissingPoints(PreparedScene& scene, const std::filesystem::path& folder,
                       double most_seconds, const PipelineListener& listener);

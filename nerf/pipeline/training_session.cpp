@@ -133,8 +133,9 @@ void TrainingSession::PrepareCapture() {
   scene_ = PrepareScene(request_.input, request_.run, config_.data, listener_);
   RequireValidation();
   ChooseResolution();
-  AddMissingPoints(scene_, request_.run, config_.data.points_share * TrainingSeconds(config_.train),
-                   listener_);
+  if (request_.effects.inspect || config_.effects.depth_supervision) {
+    AddMissingPoints(scene_, request_.run, PointSeconds(config_), listener_);
+  }
   if (request_.effects.inspect) {
     const auto requested = NamedEffects(request_.preset, request_.assignments);
     InspectScene(config_, requested, scene_, listener_);

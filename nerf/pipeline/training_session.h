@@ -52,7 +52,6 @@ class TrainingSession {
   void DecideEffects();  // runs trials for inconclusive effects
   void PlanTimeBudget();
   TrainSummary Train(const std::atomic<bool>& stop);
-  // roughly
   void EstimateWait() const;
   void ChooseResolution();
   Config ConfigWithDecisions(const std::string& preset) const;

@@ -8,7 +8,7 @@ namespace nerf {
 struct DataOptions {
   int downscale = 1;
   int film_frames = 0;
-  double points_share = 0.15;
+  double points_share = 0.06;
   int test_every = 8;
   int validation_images = 1;
   int memory_mb = 1024;
@@ -19,9 +19,9 @@ struct DataOptions {
            "photographs are area-averaged by this factor");
     option("film_frames", o.film_frames, "", ZeroOr(Between(2, 10000)),
            "how many frames of a film are used; 0: three a second, 40 to 150");
-    option("points_share", o.points_share, "of the training time", Between(0, 1),
-           "how long finding sparse points may take where the input has poses but no points, "
-           "which most verdicts on effects need; 0: never");
+    option("points_share", o.points_share, "of a time budget", Between(0, 1),
+           "how long finding sparse points may take where the input has poses but no points, which "
+           "most verdicts on effects need; without a budget, as long as the training; 0: never");
     option("test_every", o.test_every, "", ZeroOr(AtLeast(2)),
            "hold out images 0, 8, 16, ... by name; 0: none");
     option("validation_images", o.validation_images, "", AtLeast(0),

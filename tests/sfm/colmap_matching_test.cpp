@@ -6,6 +6,7 @@
 
 #include "sfm/colmap_program.h"
 #include "sfm/pair_selection.h"
+#include "sfm/pose_input.h"
 #include "tests/support/colmap_database_file.h"
 #include "tests/support/colmap_run.h"
 #include "tests/support/feature_scene.h"
@@ -24,7 +25,8 @@ class Matching : public nerf::test::ColmapRun {
  protected:
   // Photographs around one place, of which the fake COLMAP finds the features, and registers the
   // first.
-  void WriteScene(int count, int registered) {
+  //   misplaced  one that is turned; -1: all but every third
+  void WriteScene(int count, int registered, int misplaced = -2) {
     const test::FeatureScene scene(
         {.images = count, .points = 300, .opaque = true, .arc = 2 * std::numbers::pi / count});
     std::vector<test::DatabaseImage> images;
@@ -34,7 +36,13 @@ class Matching : public nerf::test::ColmapRun {
       images.push_back({name, scene.features[i]});
     }
     fake_.SetFeatures(images);
-    fake_.SetModel(scene.Reconstruction(registered));
+    PosedImages model = scene.Reconstruction(registered);
+    for (int i = 0; i < registered; ++i) {
+      if (i != misplaced && !(misplaced == -1 && i % 3 != 0)) continue;
+      model.images[i].world_from_camera.rotate(
+          Eigen::AngleAxisd(0.1 + 0.01 * i, Eigen::Vector3d(1, 1, 0).normalized()));
+    }
+    fake_.SetModel(model);
   }
   ColmapDatabase Matched() const { return ColmapDatabase(Workspace() / "database.db"); }
 };
@@ -83,6 +91,29 @@ TEST_F(Matching, AllPairsFollowWhereTooFewPhotosAreRegistered) {
   fake_.ForgetCalls();
   Run();
   EXPECT_THAT(fake_.Commands(), IsEmpty());
+}
+
+// Photograph 7 is turned by a tenth of a radian: its matches contradict its pose.
+TEST_F(Matching, AMisplacedPhotographIsLeftOut) {
+  WriteScene(20, 20, 7);
+  const PosedImages posed = Run();
+  ASSERT_EQ(posed.images.size(), 19u);
+  EXPECT_EQ(report_.misplaced, 1);
+  EXPECT_EQ(report_.verdict.trust, Trust::kGood);
+  EXPECT_THAT(report_.unregistered, ElementsAre("p107.png"));
+  EXPECT_THAT(log_.Text(), HasSubstr("1 photographs that COLMAP registered are left out"));
+  // So it is for nerf train WORKSPACE.
+  EXPECT_EQ(ReadPosedInput(FindInput(Workspace())).images.size(), 19u);
+}
+
+// All poses are wrong; with lower thresholds, too.
+TEST_F(Matching, ABrokenReconstructionIsSaid) {
+  WriteScene(20, 20, -1);
+  Run();
+  EXPECT_EQ(report_.verdict.trust, Trust::kBroken);
+  EXPECT_THAT(log_.Text(), HasSubstr("20 of 20 registered, broken; mapping again with lower"));
+  EXPECT_THAT(log_.Text(), HasSubstr("the poses are broken: only"));
+  EXPECT_THAT(fake_.Calls().back(), HasSubstr("--Mapper.init_min_num_inliers 50"));
 }
 
 // Names with spaces, which COLMAP's own lists of pairs cannot have.

@@ -159,6 +159,15 @@ TEST_F(Poses, ThatAreShuffledAreRefusedWithoutAGuess) {
   EXPECT_THAT(Describe(found), HasSubstr("shuffled"));
 }
 
+// A camera that only turns has no epipolar lines.
+TEST_F(Poses, AtOnePlaceCannotBeTold) {
+  ChangePoses([](Isometry3d pose) {
+    pose.translation().setConstant(2);
+    return pose;
+  });
+  EXPECT_TRUE(std::isnan(Check().share));
+}
+
 TEST_F(Poses, OfHardlyAnyMatchesCannotBeTold) {
   matches_.resize(1);
   matches_[0].in_first.resize(5);

@@ -5,8 +5,10 @@
 #include <array>
 #include <cstdio>
 
+#include "sfm/pose_input.h"
 #include "sfm/transforms_json.h"
 #include "tests/support/fake_colmap.h"
+#include "tests/support/feature_scene.h"
 #include "tests/support/photo_files.h"
 
 namespace nerf {
@@ -87,6 +89,65 @@ TEST_F(PosesCommand, BadInputEndsWithStatus2AndOneLine) {
 TEST_F(PosesCommand, WritesNoTransformsIfTooFewImagesAreRegistered) {
   EXPECT_EQ(RunPoses(Arguments()).status, 2);
   EXPECT_FALSE(fs::exists(out_.path() / "transforms.json"));
+}
+
+// Points for poses that are given, and what cannot be done.
+class KeepPoses : public testing::Test {
+ protected:
+  KeepPoses() {
+    std::vector<test::DatabaseImage> found;
+    for (std::size_t i = 0; i < scene_.posed.images.size(); ++i) {
+      PosedImage& image = scene_.posed.images[i];
+      image.path = scene_folder_.path() / "images" / image.name;
+      fs::create_directories(image.path.parent_path());
+      WritePhoto(image.path, 640, 480);
+      found.push_back({fmt::format("{:06}.png", i), scene_.features[i]});
+    }
+    fake_.SetFeatures(found);
+    sfm::WriteTransformsJson(scene_.posed, scene_folder_.path() / "transforms.json");
+  }
+  Result Run(const std::string& more = "") {
+    return RunPoses(scene_folder_.path().string() + " --keep-poses -o " + out_.path().string() +
+                    more);
+  }
+
+  FakeColmap fake_;
+  test::FeatureScene scene_ = test::FeatureScene({.images = 8, .points = 200});
+  ScratchFolder scene_folder_, out_;
+};
+
+TEST_F(KeepPoses, WritesAModelThatCanBeTrainedOn) {
+  const Result result = Run();
+  ASSERT_EQ(result.status, 0) << result.text;
+  EXPECT_THAT(result.text, AllOf(HasSubstr("of the matches between photographs fit the poses"),
+                                 HasSubstr("sparse points, each in")));
+  const PosedImages posed = sfm::ReadPosedInput(sfm::FindInput(out_.path()));
+  EXPECT_EQ(posed.images.size(), 8u);
+  EXPECT_GT(posed.points.size(), 150u);
+  EXPECT_TRUE(
+      posed.images[3].world_from_camera.isApprox(scene_.posed.images[3].world_from_camera, 1e-6));
+  EXPECT_EQ(Run().status, 0);  // again, into the same folder
+}
+
+TEST_F(KeepPoses, ThatContradictThePhotographsAreRefused) {
+  for (PosedImage& image : scene_.posed.images) {
+    image.world_from_camera = image.world_from_camera.inverse();
+  }
+  sfm::WriteTransformsJson(scene_.posed, scene_folder_.path() / "transforms.json");
+  const Result result = Run();
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.text, HasSubstr("fit the poses; "));
+  EXPECT_FALSE(fs::exists(out_.path() / "sparse"));
+}
+
+TEST_F(KeepPoses, PhotographsInTheOutputAreNotReplaced) {
+  fs::create_directories(out_.path() / "images");
+  const Result result = Run();
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.text, HasSubstr("holds photographs; choose another folder"));
+  EXPECT_TRUE(fake_.Calls().empty());
+  const Result invalid = Run(" --max-image-size 50");
+  EXPECT_THAT(invalid.text, HasSubstr("max image size: 50"));
 }
 
 }  // namespace

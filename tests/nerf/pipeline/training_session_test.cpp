@@ -7,8 +7,10 @@
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/model/run_folder.h"
+#include "nerf/pipeline/found_points.h"
 #include "nerf/synthetic/sample_folder.h"
 #include "tests/support/fake_colmap.h"
+#include "tests/support/feature_scene.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/photo_files.h"
 #include "tests/support/scratch_folder.h"
@@ -177,6 +179,35 @@ TEST_F(TrainingSessionTest, EstimatesTheWaitOfAFilmBeforeItIsRead) {
   };
   TrainingSession(request_, Stopwatch(), listener).Run(test::never_stop);
   EXPECT_THAT(order, testing::ElementsAre("wait", "film", "poses"));
+}
+
+// Poses without points, of photographs in which the fake COLMAP finds features.
+TEST_F(TrainingSessionTest, FindsPointsForGivenPosesWhereThereIsTime) {
+  const test::FakeColmap colmap;
+  test::FeatureScene scene({.images = 8, .points = 200});
+  std::vector<test::DatabaseImage> found;
+  for (std::size_t i = 0; i < scene.posed.images.size(); ++i) {
+    PosedImage& image = scene.posed.images[i];
+    image.path = folder_.path() / image.name;
+    test::WritePhoto(image.path, 640, 480);
+    found.push_back({fmt::format("{:06}.png", i), scene.features[i]});
+  }
+  colmap.SetFeatures(found);
+  int points = 0;
+  const PipelineListener listener = [&](const PipelineEvent& event) {
+    if (const auto* e = std::get_if<PointsFound>(&event)) points = e->report.points;
+  };
+  const std::filesystem::path run = folder_.path() / "points";
+  PosedImages posed = scene.posed;
+  FindMissingPoints(posed, run, 0.001, listener);  // no time
+  EXPECT_TRUE(posed.points.empty());
+  EXPECT_FALSE(std::filesystem::exists(run));
+  FindMissingPoints(posed, run, 1000, listener);
+  EXPECT_GT(points, 150);
+  EXPECT_EQ(posed.points.size(), static_cast<std::size_t>(points));
+  colmap.ForgetCalls();
+  FindMissingPoints(posed, run, 1000, listener);  // it has points now
+  EXPECT_TRUE(colmap.Calls().empty());
 }
 
 TEST_F(TrainingSessionTest, KeepsTheSizeOfCapturesWithPoses) {

@@ -32,7 +32,8 @@ TEST_P(HardReconstruction, IsJudgedRight) {
   PosedImages found;
   try {
     found = sfm::PosesFromPhotos(folder.path() / "images", folder.path() / "colmap", {}, &report);
-  } catch (const InputError&) {
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("registered only"), std::string::npos) << error.what();
     EXPECT_FALSE(GetParam().good.value_or(false));  // nothing found, and said so
     return;
   }
