@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "nerf/effects/effects.h"
+#include "nerf/effects/view_dependence.h"
+#include "nerf/inspect/photograph_fit.h"
+#include "nerf/inspect/track_colors.h"
 #include "nerf/inspect/verdict.h"
 #include "nerf/scene/camera.h"
 
@@ -36,6 +39,31 @@ void MovePixels(PosedImages& posed, const Vector2d& by) {
   for (auto& point : posed.points) {
     for (auto& seen : point.track) seen.pixel += by;
   }
+}
+
+// Of 60 points that all of 18 cameras could see, those of few sightings are what a matcher has
+// found to look alike: hardly any change in colour is then no evidence against gloss.
+TEST(ViewDependenceVerdict, OfMatchedPointsIsInconclusiveUnlessHardlyAnyChange) {
+  const PosedImages complete = CamerasAtDistances(std::vector<double>(18, 2.0));
+  PosedImages matched = complete;
+  for (SparsePoint& point : matched.points) point.track.resize(5);
+  const auto judge = [](const PosedImages& posed, int changing) {
+    TrackColors colors;
+    PhotographFit fit;
+    for (int point = 0; point < 60; ++point) {
+      for (int photograph = 0; photograph < 5; ++photograph) {
+        colors.seen.push_back({point, photograph, Eigen::Vector3f::Zero(), 0.0f});
+        fit.residuals.push_back(Eigen::Vector3f::Constant(point < changing ? 0.5f : 0.0f));
+      }
+    }
+    return JudgeViewDependence(colors, fit, posed);
+  };
+  EXPECT_TRUE(judge(complete, 4).IsConclusive());
+  EXPECT_FALSE(judge(complete, 4).on);
+  EXPECT_FALSE(judge(matched, 4).IsConclusive());
+  EXPECT_TRUE(judge(matched, 0).IsConclusive());
+  EXPECT_TRUE(judge(matched, 20).on);
+  EXPECT_TRUE(judge(matched, 20).IsConclusive());
 }
 
 TEST(PoseRefinementVerdict, IsTheReprojectionError) {
