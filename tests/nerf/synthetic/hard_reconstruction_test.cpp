@@ -18,11 +18,11 @@ struct Case {
   std::optional<bool> good;  // whether the poses can be found; nothing: by a hair
 };
 
-class HardReconstruction : public testing::TestWithParam<Case> {};
+class HardReconstructionForReal : public testing::TestWithParam<Case> {};
 
 // What is called good is: half of the photographs are turned by less than half a degree from the
 // truth.
-TEST_P(HardReconstruction, IsJudgedRight) {
+TEST_P(HardReconstructionForReal, IsJudgedRight) {
   const test::ScratchFolder folder;
   SampleOptions options;
   options.scenario = GetParam().scenario;
@@ -49,7 +49,7 @@ TEST_P(HardReconstruction, IsJudgedRight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Scenarios, HardReconstruction,
+    Scenarios, HardReconstructionForReal,
     testing::Values(Case{Scenario::kViewDependence, true}, Case{Scenario::kTwoGroups, true},
                     Case{Scenario::kMotionBlur, true}, Case{Scenario::kRepeated, std::nullopt},
                     Case{Scenario::kMirrors, false}, Case{Scenario::kTextureless, false}));
