@@ -89,7 +89,7 @@ PosedImages WithoutPoses(const std::filesystem::path& folder) {
   return photographs;
 }
 
-// A temporary folder, which is removed with it.
+// A temporary folder with a unique name (mkdtemp), which is removed with this object.
 class WorkFolder {
  public:
   WorkFolder() {

@@ -211,6 +211,9 @@ void AddPosesCommand(CLI::App& app) {
           "alignment; positions relative to the cameras' mean distance from their centre")
       ->check(CLI::ExistingFile);
   command->add_option("--threads", colmap.threads, "Threads; 0: all cores")->capture_default_str();
+  for (const char* of_new_poses : {"--matcher", "--frames", "--truth"}) {
+    command->get_option("--keep-poses")->excludes(command->get_option(of_new_poses));
+  }
   command->footer(
       "After an interruption, run it again to continue; finished steps are skipped.\n"
       "Examples:\n"

@@ -2,12 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spdlog/fmt/fmt.h>
 
 #include "nerf/image/image_io.h"
 #include "tests/support/fake_colmap.h"
-#include "tests/support/feature_scene.h"
 #include "tests/support/input_error_of.h"
+#include "tests/support/scene_folder.h"
 
 namespace nerf::sfm {
 namespace {
@@ -23,14 +22,8 @@ using testing::IsEmpty;
 class SparsePointsOf : public testing::Test {
  protected:
   SparsePointsOf() {
-    std::vector<test::DatabaseImage> found;
-    for (std::size_t i = 0; i < scene_.posed.images.size(); ++i) {
-      PosedImage& image = scene_.posed.images[i];
-      image.path = photos_.path() / image.name;
-      WriteImage(image.path, Picture(1));
-      found.push_back({fmt::format("{:06}.png", i), scene_.features[i]});
-    }
-    fake_.SetFeatures(found);
+    fake_.SetFeatures(test::WritePhotographsOf(scene_, photos_.path()));
+    for (const PosedImage& image : scene_.posed.images) WriteImage(image.path, Picture(1));
     posed_ = scene_.posed;
   }
   // Opaque on the right of the middle, and as much on the left.

@@ -8,8 +8,8 @@
 #include "sfm/pose_input.h"
 #include "sfm/transforms_json.h"
 #include "tests/support/fake_colmap.h"
-#include "tests/support/feature_scene.h"
 #include "tests/support/photo_files.h"
+#include "tests/support/scene_folder.h"
 
 namespace nerf {
 namespace {
@@ -95,15 +95,7 @@ TEST_F(PosesCommand, WritesNoTransformsIfTooFewImagesAreRegistered) {
 class KeepPoses : public testing::Test {
  protected:
   KeepPoses() {
-    std::vector<test::DatabaseImage> found;
-    for (std::size_t i = 0; i < scene_.posed.images.size(); ++i) {
-      PosedImage& image = scene_.posed.images[i];
-      image.path = scene_folder_.path() / "images" / image.name;
-      fs::create_directories(image.path.parent_path());
-      WritePhoto(image.path, 640, 480);
-      found.push_back({fmt::format("{:06}.png", i), scene_.features[i]});
-    }
-    fake_.SetFeatures(found);
+    fake_.SetFeatures(test::WritePhotographsOf(scene_, scene_folder_.path() / "images"));
     sfm::WriteTransformsJson(scene_.posed, scene_folder_.path() / "transforms.json");
   }
   Result Run(const std::string& more = "") {
@@ -148,6 +140,7 @@ TEST_F(KeepPoses, PhotographsInTheOutputAreNotReplaced) {
   EXPECT_TRUE(fake_.Calls().empty());
   const Result invalid = Run(" --max-image-size 50");
   EXPECT_THAT(invalid.text, HasSubstr("max image size: 50"));
+  EXPECT_EQ(Run(" --matcher guided").status, 2);  // has no effect on given poses
 }
 
 }  // namespace

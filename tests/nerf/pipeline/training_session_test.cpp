@@ -10,9 +10,9 @@
 #include "nerf/pipeline/found_points.h"
 #include "nerf/synthetic/sample_folder.h"
 #include "tests/support/fake_colmap.h"
-#include "tests/support/feature_scene.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/photo_files.h"
+#include "tests/support/scene_folder.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_training.h"
 
@@ -185,14 +185,7 @@ TEST_F(TrainingSessionTest, EstimatesTheWaitOfAFilmBeforeItIsRead) {
 TEST_F(TrainingSessionTest, FindsPointsForGivenPosesWhereThereIsTime) {
   const test::FakeColmap colmap;
   test::FeatureScene scene({.images = 8, .points = 200});
-  std::vector<test::DatabaseImage> found;
-  for (std::size_t i = 0; i < scene.posed.images.size(); ++i) {
-    PosedImage& image = scene.posed.images[i];
-    image.path = folder_.path() / image.name;
-    test::WritePhoto(image.path, 640, 480);
-    found.push_back({fmt::format("{:06}.png", i), scene.features[i]});
-  }
-  colmap.SetFeatures(found);
+  colmap.SetFeatures(test::WritePhotographsOf(scene, folder_.path()));
   int points = 0;
   const PipelineListener listener = [&](const PipelineEvent& event) {
     if (const auto* e = std::get_if<PointsFound>(&event)) points = e->report.points;

@@ -34,7 +34,7 @@ TEST_P(HardReconstructionForReal, IsJudgedRight) {
     found = sfm::PosesFromPhotos(folder.path() / "images", folder.path() / "colmap", {}, &report);
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("registered only"), std::string::npos) << error.what();
-    EXPECT_FALSE(GetParam().good.value_or(false));  // nothing found, and said so
+    EXPECT_FALSE(GetParam().good.value_or(false));
     return;
   }
   if (GetParam().good) {
