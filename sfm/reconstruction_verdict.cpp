@@ -4,21 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "nerf/base/quantile.h"
 #include "nerf/scene/scene_normalization.h"
+#include "sfm/pair_selection.h"
 
 namespace nerf::sfm {
 namespace {
 
 // docs/poses.md has the captures with known poses on which these were chosen.
 constexpr double kMaxError = 4;                              // pixels
-constexpr std::size_t kStrongest = 6;                        // pairs of each photograph
+constexpr int kStrongest = 6;                                // pairs of each photograph
 constexpr double kFits = 0.85, kHardlyFits = 0.65;           // share of the matches
 constexpr double kMisplaced = 0.8;                           // of the matches of a photograph
 constexpr double kFewMisplaced = 0.1, kManyMisplaced = 0.3;  // of the photographs
@@ -41,25 +40,6 @@ double LargestAngle(const PosedImages& model, const SparsePoint& point) {
   return std::acos(std::clamp(smallest_cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-// The strongest pairs of each photograph: of photographs that do not overlap, some matches agree
-// with a geometry by chance.
-std::vector<SeenTwice> StrongestPairs(std::span<const SeenTwice> matches, std::size_t images) {
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> of_image(images);
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    for (const int image : {matches[i].images.first, matches[i].images.second}) {
-      of_image[image].emplace_back(matches[i].in_first.size(), i);
-    }
-  }
-  std::set<std::size_t> kept;
-  for (auto& own : of_image) {
-    std::ranges::sort(own, std::greater<>());
-    for (std::size_t k = 0; k < std::min(own.size(), kStrongest); ++k) kept.insert(own[k].second);
-  }
-  std::vector<SeenTwice> strongest;
-  for (const std::size_t i : kept) strongest.push_back(matches[i]);
-  return strongest;
-}
-
 ReconstructionFigures FiguresOf(const PosedImages& model, std::span<const SeenTwice> matches) {
   ReconstructionFigures figures;
   figures.registered = static_cast<int>(model.images.size());
@@ -76,8 +56,7 @@ ReconstructionFigures FiguresOf(const PosedImages& model, std::span<const SeenTw
   figures.observations = observations.empty() ? 0 : Median(observations);
   figures.angle = angles.empty() ? 0 : Median(angles);
   int all = 0, fitting = 0;
-  const std::vector<ImageFit> fits =
-      FitOfImages(model, StrongestPairs(matches, model.images.size()), kMaxError);
+  const std::vector<ImageFit> fits = FitOfImages(model, matches, kMaxError);
   for (const ImageFit& fit : fits) {
     all += fit.matches;
     fitting += fit.fitting;
@@ -103,17 +82,21 @@ std::vector<SeenTwice> MatchesOf(const PosedImages& model, const ColmapDatabase&
     image[i] = found->second;
     positions[i] = database.ReadFeatures(static_cast<int>(i)).positions;
   }
-  std::vector<SeenTwice> all;
-  for (const auto& [pair, count] : database.VerifiedPairs()) {
-    if (image[pair.first] < 0 || image[pair.second] < 0) continue;
+  std::vector<std::pair<ImagePair, int>> verified = database.VerifiedPairs();
+  std::erase_if(verified, [&](const auto& entry) {
+    return image[entry.first.first] < 0 || image[entry.first.second] < 0;
+  });
+  std::vector<SeenTwice> strongest;
+  for (const ImagePair& pair :
+       MostSimilarPairs(verified, static_cast<int>(image.size()), kStrongest, 0)) {
     SeenTwice seen{{image[pair.first], image[pair.second]}, {}, {}};
     for (const FeatureMatch& match : database.ReadVerified(pair)) {
       seen.in_first.push_back(positions[pair.first][match.first].cast<double>());
       seen.in_second.push_back(positions[pair.second][match.second].cast<double>());
     }
-    all.push_back(std::move(seen));
+    strongest.push_back(std::move(seen));
   }
-  return all;
+  return strongest;
 }
 
 ReconstructionVerdict JudgeReconstruction(const PosedImages& model,

@@ -34,11 +34,12 @@ struct ReconstructionVerdict {
   std::string reason;  // why it is not good, with what to photograph next time; empty if it is
 };
 
-// The matches of a database between the images of a model, by name.
+// The matches of a database between the images of a model, by name: those of the six strongest
+// pairs of each. Of photographs that do not overlap, some matches agree with a geometry by chance.
 std::vector<SeenTwice> MatchesOf(const PosedImages& model, const ColmapDatabase& database);
 
-// Judges a model by matches that the mapper did not choose: those of all pairs of its photographs,
-// each verified for itself. Without any there is nothing to judge by, and it is taken for good.
+// Judges a model by matches that the mapper did not choose: each pair is verified for itself.
+// Without any there is nothing to judge by, and it is taken for good.
 ReconstructionVerdict JudgeReconstruction(const PosedImages& model,
                                           std::span<const SeenTwice> matches);
 

@@ -73,12 +73,13 @@ bool IsOpaqueAround(const Image& image, int x, int y) {
 
 // Throws InputError as LoadPhotograph does, also where the photograph has not the size of its
 // camera.
-PhotoFeatures LookAt(const PosedImages& posed, int image, const Features& features) {
+PhotoFeatures LookAt(const PosedImages& posed, int image,
+                     const std::vector<Eigen::Vector2f>& positions) {
   const Photograph photograph =
       LoadPhotograph(posed, posed.images[image], {1, MaskMeaning::kEmpty});
   const Image& pixels = photograph.pixels;
   PhotoFeatures found;
-  for (const Eigen::Vector2f& position : features.positions) {
+  for (const Eigen::Vector2f& position : positions) {
     found.pixels.push_back(position.cast<double>());
     const int x = std::clamp(static_cast<int>(found.pixels.back().x()), 0, pixels.width - 1);
     const int y = std::clamp(static_cast<int>(found.pixels.back().y()), 0, pixels.height - 1);
@@ -120,7 +121,7 @@ Matched ReadMatched(const PosedImages& posed, const std::vector<Photo>& photos,
   std::map<std::string, const Photo*> photo_of;
   for (const ColmapImage& image : plan) photo_of[image.name] = &photos[image.photo];
   Matched matched;
-  std::vector<Features> features;
+  std::vector<std::vector<Eigen::Vector2f>> positions;
   for (std::size_t i = 0; i < database.Names().size(); ++i) {
     const auto photo = photo_of.find(database.Names()[i]);
     if (photo == photo_of.end()) {
@@ -130,13 +131,13 @@ Matched ReadMatched(const PosedImages& posed, const std::vector<Photo>& photos,
           posed.source.string(), database.Names()[i]);
     }
     matched.image_of.push_back(NumberOf(photo->second->name));
-    features.push_back(database.ReadFeatures(static_cast<int>(i)));
+    positions.push_back(database.ReadFeatures(static_cast<int>(i)).positions);
   }
-  matched.features.resize(features.size());
+  matched.features.resize(positions.size());
   ParallelForEach(
-      std::ssize(features),
+      std::ssize(positions),
       [&](std::int64_t i) {
-        matched.features[i] = LookAt(posed, matched.image_of[i], features[i]);
+        matched.features[i] = LookAt(posed, matched.image_of[i], positions[i]);
       },
       threads);
   for (const auto& [pair, count] : database.VerifiedPairs()) {

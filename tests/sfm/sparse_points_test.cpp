@@ -3,7 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <tuple>
+
+#include "nerf/base/quantile.h"
 #include "nerf/image/image_io.h"
+#include "sfm/colmap_database.h"
+#include "sfm/colmap_model.h"
+#include "sfm/colmap_program.h"
+#include "sfm/colmap_text_writer.h"
+#include "sfm/pose_input.h"
 #include "tests/support/fake_colmap.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scene_folder.h"
@@ -108,6 +117,66 @@ TEST_F(SparsePointsOf, PosesThatContradictThePhotographsAreNone) {
 TEST_F(SparsePointsOf, PhotographsOfAnotherSizeAreNamed) {
   posed_.cameras[0].width = 320;
   EXPECT_THAT(test::InputErrorOf([&] { Find(); }), AllOf(HasSubstr("p10"), HasSubstr("640x480")));
+}
+
+// By the installed COLMAP, from the same verified matches: each of its points that three or more
+// photographs see, against the point of ours that shares a sighting.
+TEST(TriangulationForReal, AgreesWithColmapsForNeighbouringPhotosOfTheFox) {
+  PosedImages posed =
+      ReadPosedInput(FindInput(fs::path(NERF_TEST_DATA) / "fox" / "transforms.json"));
+  posed.images.resize(8);
+  const test::ScratchFolder out;
+  ColmapOptions options;
+  options.max_image_size = 960;
+  FindSparsePoints(posed, out.path() / "points", options);
+  PosedImages without = posed;
+  without.points.clear();
+  const ColmapDatabase database(out.path() / "points" / "database.db");
+  for (std::size_t i = 0; i < posed.images.size(); ++i)
+    without.images[i].name = database.Names()[i];
+  fs::create_directories(out.path() / "given");
+  fs::create_directories(out.path() / "theirs");
+  WriteColmapText(without, out.path() / "given");
+  const std::vector<std::string> arguments = {
+      "--database_path", (out.path() / "points" / "database.db").string(),
+      "--image_path",    (out.path() / "points" / "images").string(),
+      "--input_path",    (out.path() / "given").string(),
+      "--output_path",   (out.path() / "theirs").string(),
+      "--clear_points",  "1"};
+  ASSERT_EQ(ColmapProgram::Find()
+                .Run("point_triangulator", arguments, out.path() / "log.txt", [](auto) {})
+                .exit_code,
+            0);
+  const PosedImages theirs =
+      ReadColmapModel(out.path() / "theirs", out.path() / "points" / "images");
+  ASSERT_EQ(theirs.images.size(), posed.images.size());
+
+  std::map<std::tuple<int, int, int>, const SparsePoint*> ours;  // by image and tenths of pixels
+  const auto key = [](int image, const Eigen::Vector2d& pixel) {
+    return std::tuple(image, static_cast<int>(10 * pixel.x()), static_cast<int>(10 * pixel.y()));
+  };
+  for (const SparsePoint& point : posed.points) {
+    for (const TrackElement& e : point.track) ours[key(e.image, e.pixel)] = &point;
+  }
+  std::vector<double> relative;  // difference by distance from the camera
+  int compared = 0;
+  for (const SparsePoint& point : theirs.points) {
+    if (point.track.size() < 3) continue;
+    ++compared;
+    for (const TrackElement& e : point.track) {
+      const auto found = ours.find(key(e.image, e.pixel));
+      if (found == ours.end()) continue;
+      const Eigen::Vector3d camera = posed.images[e.image].world_from_camera.translation();
+      relative.push_back((found->second->x_in_world - point.x_in_world).norm() /
+                         (point.x_in_world - camera).norm());
+      break;
+    }
+  }
+  EXPECT_GT(compared, 2000);
+  EXPECT_GE(std::ssize(relative), 0.95 * compared);
+  EXPECT_NEAR(std::ssize(posed.points), compared, 0.1 * compared);
+  EXPECT_LT(Quantile(relative, 0.5), 1e-5);
+  EXPECT_LT(Quantile(relative, 0.9), 2e-3);  // where the tracks differ
 }
 
 }  // namespace
