@@ -30,11 +30,14 @@ const std::vector<std::string> kRelaxedMapping = {
 struct MapperBound {
   std::vector<std::string> names;
   const char* value;
+  const char* of_many =
+      value;  // a global adjustment takes longer than in proportion to their number
 };
+constexpr int kManyPhotographs = 500;
 const std::vector<MapperBound> kMapperBounds = {
-    {{"Mapper.ba_global_images_ratio", "Mapper.ba_global_frames_ratio"}, "1.4"},
-    {{"Mapper.ba_global_points_ratio"}, "1.4"},
-    {{"Mapper.ba_global_max_refinements"}, "2"},
+    {{"Mapper.ba_global_images_ratio", "Mapper.ba_global_frames_ratio"}, "1.4", "2"},
+    {{"Mapper.ba_global_points_ratio"}, "1.4", "2"},
+    {{"Mapper.ba_global_max_refinements"}, "2", "1"},
     {{"Mapper.ba_global_max_num_iterations"}, "20"},
     {{"Mapper.ba_global_function_tolerance"}, "1e-6"},
     {{"Mapper.ba_local_max_refinements"}, "1"},
@@ -235,7 +238,8 @@ void ColmapSteps::RunMapper(const std::string& step, const fs::path& target,
                          Images().string(), "--output_path",     target.string()};
   arguments.insert(arguments.end(), thresholds.begin(), thresholds.end());
   for (const MapperBound& bound : kMapperBounds) {
-    AddKnown("mapper", bound.names, bound.value, arguments);
+    AddKnown("mapper", bound.names, photos_ > kManyPhotographs ? bound.of_many : bound.value,
+             arguments);
   }
   AddThreads("mapper", {"Mapper.num_threads"}, arguments);
   const ColmapProgram::Outcome outcome = Run(step, "mapper", arguments);

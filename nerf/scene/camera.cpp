@@ -4,10 +4,27 @@
 #include <cmath>
 
 #include "nerf/scene/camera_models.h"
-#include "nerf/scene/lens_distortion.h"
 
 namespace nerf {
 namespace {
+
+std::optional<Eigen::Vector2d> IdealFromDirection(bool is_fisheye, const Eigen::Vector3d& x) {
+  if (!is_fisheye)
+    return x.z() > 0 ? std::optional<Eigen::Vector2d>(x.head<2>() / x.z()) : std::nullopt;
+  const double radius = x.head<2>().norm();
+  if (radius == 0) return x.z() > 0 ? std::optional(Eigen::Vector2d(0, 0)) : std::nullopt;
+  return x.head<2>() * (std::atan2(radius, x.z()) / radius);
+}
+
+Eigen::Vector3d DirectionFromIdeal(bool is_fisheye, const Eigen::Vector2d& ideal) {
+  if (!is_fisheye) return ideal.homogeneous().normalized();
+  const double theta = ideal.norm();
+  if (theta == 0) return Eigen::Vector3d::UnitZ();
+  const Eigen::Vector2d lateral = ideal * (std::sin(theta) / theta);
+  return {lateral.x(), lateral.y(), std::cos(theta)};
+}
+
+}  // namespace
 
 LensDistortion LensOf(const Camera& camera) {
   assert(static_cast<int>(camera.params.size()) == CameraModelNumParams(camera.model));
@@ -54,24 +71,6 @@ LensDistortion LensOf(const Camera& camera) {
   }
   return lens;
 }
-
-std::optional<Eigen::Vector2d> IdealFromDirection(bool is_fisheye, const Eigen::Vector3d& x) {
-  if (!is_fisheye)
-    return x.z() > 0 ? std::optional<Eigen::Vector2d>(x.head<2>() / x.z()) : std::nullopt;
-  const double radius = x.head<2>().norm();
-  if (radius == 0) return x.z() > 0 ? std::optional(Eigen::Vector2d(0, 0)) : std::nullopt;
-  return x.head<2>() * (std::atan2(radius, x.z()) / radius);
-}
-
-Eigen::Vector3d DirectionFromIdeal(bool is_fisheye, const Eigen::Vector2d& ideal) {
-  if (!is_fisheye) return ideal.homogeneous().normalized();
-  const double theta = ideal.norm();
-  if (theta == 0) return Eigen::Vector3d::UnitZ();
-  const Eigen::Vector2d lateral = ideal * (std::sin(theta) / theta);
-  return {lateral.x(), lateral.y(), std::cos(theta)};
-}
-
-}  // namespace
 
 std::optional<Eigen::Vector3d> DirectionFromPixel(const Camera& camera,
                                                   const Eigen::Vector2d& pixel) {

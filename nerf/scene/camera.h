@@ -5,12 +5,16 @@
 #include <optional>
 
 #include "nerf/scene/camera_intrinsics.h"
+#include "nerf/scene/lens_distortion.h"
 #include "nerf/scene/posed_images.h"
 
 namespace nerf {
 
 // Pixel <-> direction for every camera model of COLMAP 3.8, in camera axes (OpenCV: x right, y
 // down, z forward). Pixel centres lie at +0.5. Formulae: COLMAP src/base/camera_models.h.
+
+// The distortion of a camera's lens, without focal lengths and principal point.
+LensDistortion LensOf(const Camera& camera);
 
 // Unit direction through a pixel. Inverts the lens distortion by Newton's method in double.
 //   returns  nullopt where the inverse does not converge or the pixel is outside the valid range of

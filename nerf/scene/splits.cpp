@@ -4,10 +4,13 @@
 #include <cstddef>
 #include <vector>
 
+#include "nerf/scene/representative_cameras.h"
+
 namespace nerf {
 namespace {
 
 constexpr std::size_t kFewestToHoldOut = 8, kFewestToValidate = 16;
+constexpr std::size_t kTrainedForEachValidated = 16, kFewestValidated = 3, kMostValidated = 16;
 
 bool Defines(const PosedImages& posed, Split split) {
   return std::ranges::any_of(posed.images,
@@ -31,10 +34,14 @@ void AssignSplits(PosedImages& posed, const DataOptions& options) {
     if (split == Split::kTrain) train.push_back(by_name[i]);
   }
   if (Defines(posed, Split::kValidation) || train.size() < kFewestToValidate) return;
-  // Evenly over the capture, away from its ends.
-  const std::size_t count = std::min<std::size_t>(options.validation_images, train.size() / 8);
-  for (std::size_t k = 0; k < count; ++k) {
-    train[(2 * k + 1) * train.size() / (2 * count)]->split = Split::kValidation;
+  const std::size_t wanted =
+      options.validation_images < 0
+          ? std::clamp(train.size() / kTrainedForEachValidated, kFewestValidated, kMostValidated)
+          : static_cast<std::size_t>(options.validation_images);
+  std::vector<Eigen::Isometry3d> cameras;
+  for (const PosedImage* image : train) cameras.push_back(image->world_from_camera);
+  for (const std::size_t i : RepresentativeCameras(cameras, std::min(wanted, train.size() / 8))) {
+    train[i]->split = Split::kValidation;
   }
 }
 

@@ -96,12 +96,23 @@ RayBatch Validation::Rays(const Model& model) const {
 double Validation::Psnr(const Model& model, bool fit_exposure) const {
   RenderOutput out = MakeRenderer(model)->Render(Rays(model));
   if (fit_exposure) FitExposures(out, batch_, model.scene.encoding);
-  double sum = 0;
+  std::vector<double> error(names_.size(), 0.0);
+  std::vector<std::int64_t> values(names_.size(), 0);
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {
-    const double error = std::clamp(out.rgb[i], 0.0f, 1.0f) - std::clamp(batch_.rgb[i], 0.0f, 1.0f);
-    sum += error * error;
+    const double difference =
+        std::clamp(out.rgb[i], 0.0f, 1.0f) - std::clamp(batch_.rgb[i], 0.0f, 1.0f);
+    const std::int64_t photograph = batch_.photograph[i / 3];
+    error[photograph] += difference * difference;
+    ++values[photograph];
   }
-  return PsnrFromMse(sum / static_cast<double>(out.rgb.size()));
+  double sum = 0;
+  int photographs = 0;
+  for (std::size_t k = 0; k < error.size(); ++k) {
+    if (values[k] == 0) continue;
+    sum += PsnrFromMse(error[k] / static_cast<double>(values[k]));
+    ++photographs;
+  }
+  return sum / photographs;
 }
 
 }  // namespace nerf

@@ -20,9 +20,10 @@ class Validation {
 
   bool Empty() const { return batch_.rays.Size() == 0; }
 
-  // PSNR, dB, with the model's refined focal lengths, and its refined poses for photographs of
-  // which a part is trained on. With fit_exposure, each photograph is rendered at its own exposure,
-  // fitted to it: for models that simulate exposures, and for those compared with them.
+  // PSNR, dB, the mean over the photographs as that of `nerf eval`, with the model's refined focal
+  // lengths, and its refined poses for photographs of which a part is trained on. With
+  // fit_exposure, each photograph is rendered at its own exposure, fitted to it: for models that
+  // simulate exposures, and for those compared with them.
   double Psnr(const Model& model, bool fit_exposure) const;
 
  private:

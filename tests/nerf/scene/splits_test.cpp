@@ -26,8 +26,8 @@ TEST(AssignSplits, EveryEighthImageByNameIsHeldOut) {
   AssignSplits(posed, DataOptions());
   std::ranges::reverse(posed.images);
   EXPECT_EQ(IndicesOf(posed, Split::kTest), (std::vector<int>{0, 8, 16, 24, 32, 40, 48}));
-  EXPECT_EQ(IndicesOf(posed, Split::kValidation).size(), 1u);
-  EXPECT_EQ(IndicesOf(posed, Split::kTrain).size(), 42u);
+  EXPECT_EQ(IndicesOf(posed, Split::kValidation).size(), 3u);
+  EXPECT_EQ(IndicesOf(posed, Split::kTrain).size(), 40u);
 }
 
 TEST(AssignSplits, ATestSplitOfTheSourceIsKept) {

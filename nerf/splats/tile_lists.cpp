@@ -1,0 +1,115 @@
+#include "nerf/splats/tile_lists.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "nerf/base/parallel.h"
+
+namespace nerf {
+namespace {
+
+using kernels::kTileHeight;
+using kernels::kTileWidth;
+using kernels::ProjectedGaussian;
+
+constexpr std::int64_t kChunks = 16;  // whatever the number of threads
+
+// Calls use(tile) for the tiles that the ellipse of a Gaussian touches, row after row. Where it is
+// cut it is q = xx dx^2 + xy dx dy + yy dy^2 = least - log2_opacity, negative.
+template <class Use>
+void ForEachTile(const ProjectedGaussian& g, int columns, int rows, const Use& use) {
+  const auto tile_of = [](float position, int size) {
+    return static_cast<int>(std::floor(position / static_cast<float>(size)));
+  };
+  // The first and last pixel centre inside.
+  const int top = std::max(0, tile_of(g.y - g.radius_y - 0.5f, kTileHeight));
+  const int bottom = std::min(rows - 1, tile_of(g.y + g.radius_y - 0.5f, kTileHeight));
+  const int left = std::max(0, tile_of(g.x - g.radius_x - 0.5f, kTileWidth));
+  const int right = std::min(columns - 1, tile_of(g.x + g.radius_x - 0.5f, kTileWidth));
+  if (top == bottom || left == right) {
+    for (int row = top; row <= bottom; ++row) {
+      for (int column = left; column <= right; ++column) use(row * columns + column);
+    }
+    return;
+  }
+  const float a = -g.xx, b = -0.5f * g.xy, c = -g.yy, level = g.log2_opacity - g.least;
+  const float det = std::max(a * c - b * b, 0.0f);
+  const float dy_of_rightmost = -b / c * g.radius_x;
+  for (int row = top; row <= bottom; ++row) {
+    // The pixel centres of the row of tiles.
+    const float y0 = static_cast<float>(row * kTileHeight) + 0.5f - g.y;
+    const float y1 = y0 + static_cast<float>(kTileHeight - 1);
+    const float at_right = std::clamp(dy_of_rightmost, y0, y1);
+    const float at_left = std::clamp(-dy_of_rightmost, y0, y1);
+    const float root_right = std::max(level * a - det * at_right * at_right, 0.0f);
+    const float root_left = std::max(level * a - det * at_left * at_left, 0.0f);
+    const float x1 = g.x + (-b * at_right + std::sqrt(root_right)) / a;
+    const float x0 = g.x + (-b * at_left - std::sqrt(root_left)) / a;
+    // Half a pixel more, against rounding.
+    const int first = std::max(left, tile_of(x0 - 1.0f, kTileWidth));
+    const int last = std::min(right, tile_of(x1, kTileWidth));
+    for (int column = first; column <= last; ++column) use(row * columns + column);
+  }
+}
+
+}  // namespace
+
+void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int height) {
+  columns_ = (width + kTileWidth - 1) / kTileWidth;
+  rows_ = (height + kTileHeight - 1) / kTileHeight;
+  const auto count = static_cast<std::int64_t>(gaussians.size());
+  tiles_of_chunk_.resize(kChunks);
+  begin_of_chunk_.resize(kChunks);
+  const auto first_of = [&](std::int64_t chunk) { return count * chunk / kChunks; };
+  ParallelForEach(kChunks, [&](std::int64_t chunk) {
+    std::vector<std::uint32_t>& tiles = tiles_of_chunk_[chunk];
+    std::vector<std::uint32_t>& counts = begin_of_chunk_[chunk];
+    tiles.clear();
+    counts.assign(static_cast<std::size_t>(Count()), 0);
+    for (std::int64_t i = first_of(chunk); i < first_of(chunk + 1); ++i) {
+      const std::size_t before = tiles.size();
+      ForEachTile(gaussians[i], columns_, rows_, [&](int tile) {
+        tiles.push_back(static_cast<std::uint32_t>(tile));
+        ++counts[tile];
+      });
+      gaussians[i].first_slot = static_cast<std::uint32_t>(before);
+      gaussians[i].tiles = static_cast<std::uint32_t>(tiles.size() - before);
+    }
+  });
+  begin_.resize(static_cast<std::size_t>(Count()) + 1);
+  std::uint32_t sum = 0;
+  for (int tile = 0; tile < Count(); ++tile) {
+    begin_[tile] = sum;
+    for (auto& counts : begin_of_chunk_) {
+      const std::uint32_t in_chunk = counts[tile];
+      counts[tile] = sum;
+      sum += in_chunk;
+    }
+  }
+  begin_.back() = sum;
+  entries_.resize(sum);
+  std::vector<std::uint32_t> first_slot(kChunks, 0);
+  for (std::int64_t chunk = 1; chunk < kChunks; ++chunk) {
+    first_slot[chunk] =
+        first_slot[chunk - 1] + static_cast<std::uint32_t>(tiles_of_chunk_[chunk - 1].size());
+  }
+  ParallelForEach(kChunks, [&](std::int64_t chunk) {
+    std::vector<std::uint32_t>& next = begin_of_chunk_[chunk];
+    for (std::int64_t i = first_of(chunk); i < first_of(chunk + 1); ++i) {
+      ProjectedGaussian& g = gaussians[i];
+      const std::uint32_t* const tiles = tiles_of_chunk_[chunk].data() + g.first_slot;
+      g.first_slot += first_slot[chunk];
+      for (std::uint32_t k = 0; k < g.tiles; ++k) {
+        entries_[next[tiles[k]]++] = {static_cast<std::uint32_t>(i), g.first_slot + k};
+      }
+    }
+  });
+}
+
+kernels::Tile TileLists::At(int tile) const {
+  return {tile % columns_ * kTileWidth, tile / columns_ * kTileHeight,
+          std::span(entries_).subspan(begin_[tile], begin_[tile + 1] - begin_[tile])};
+}
+
+}  // namespace nerf
