@@ -10,7 +10,7 @@ struct DataOptions {
   int film_frames = 0;
   double points_share = 0.06;
   int test_every = 8;
-  int validation_images = -1;
+  int validation_images = 16;
   int memory_mb = 1024;
 
   template <class Self, class Visitor>
@@ -24,9 +24,10 @@ struct DataOptions {
            "most verdicts on effects need; without a budget, as long as the training; 0: never");
     option("test_every", o.test_every, "", ZeroOr(AtLeast(2)),
            "hold out images 0, 8, 16, ... by name; 0: none");
-    option("validation_images", o.validation_images, "", AtLeast(-1),
-           "taken out of the training images to measure progress, at poses that stand for all; "
-           "-1: one in sixteen, 3 to 16; 0: none");
+    option(
+        "validation_images", o.validation_images, "", AtLeast(0),
+        "at most; one in sixteen of the training images, but at least 3, is taken out to measure "
+        "progress, at poses that stand for all; 0: none");
     option("memory_mb", o.memory_mb, "MB", AtLeast(1),
            "for pixels; where they do not fit, an even random share is held");
   }

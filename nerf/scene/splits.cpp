@@ -10,7 +10,7 @@ namespace nerf {
 namespace {
 
 constexpr std::size_t kFewestToHoldOut = 8, kFewestToValidate = 16;
-constexpr std::size_t kTrainedForEachValidated = 16, kFewestValidated = 3, kMostValidated = 16;
+constexpr std::size_t kTrainedForEachValidated = 16, kFewestValidated = 3;
 
 bool Defines(const PosedImages& posed, Split split) {
   return std::ranges::any_of(posed.images,
@@ -34,13 +34,12 @@ void AssignSplits(PosedImages& posed, const DataOptions& options) {
     if (split == Split::kTrain) train.push_back(by_name[i]);
   }
   if (Defines(posed, Split::kValidation) || train.size() < kFewestToValidate) return;
-  const std::size_t wanted =
-      options.validation_images < 0
-          ? std::clamp(train.size() / kTrainedForEachValidated, kFewestValidated, kMostValidated)
-          : static_cast<std::size_t>(options.validation_images);
+  const std::size_t count =
+      std::min({std::max(train.size() / kTrainedForEachValidated, kFewestValidated),
+                static_cast<std::size_t>(options.validation_images), train.size() / 8});
   std::vector<Eigen::Isometry3d> cameras;
   for (const PosedImage* image : train) cameras.push_back(image->world_from_camera);
-  for (const std::size_t i : RepresentativeCameras(cameras, std::min(wanted, train.size() / 8))) {
+  for (const std::size_t i : RepresentativeCameras(cameras, count)) {
     train[i]->split = Split::kValidation;
   }
 }

@@ -51,7 +51,7 @@ void ForEachTileInParallel(const TileLists& tiles, const std::function<void(int)
 void GaussianPicture::Resize(int new_width, int new_height) {
   width = new_width;
   height = new_height;
-  stride = (width + kTileWidth - 1) / kTileWidth * kTileWidth;
+  stride = (width + kRowPadding - 1) / kRowPadding * kRowPadding;
   rows = (height + kTileHeight - 1) / kTileHeight * kTileHeight;
   values.resize(static_cast<std::size_t>(kPlanes) * rows * stride);
 }

@@ -14,8 +14,9 @@ namespace nerf {
 
 // A picture as planes of floats: red, green, blue without background, the transmittance that is
 // left for the background, and the sum of weight times distance. Rows and columns are padded to
-// whole tiles; what is beyond width and height is of no meaning.
+// whole tiles and vectors; what is beyond width and height is of no meaning.
 struct GaussianPicture {
+  static constexpr int kRowPadding = 16;
   static constexpr int kPlanes = 5;
   static constexpr int kTransmittance = 3, kDistance = 4;
 

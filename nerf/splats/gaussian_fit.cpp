@@ -1,0 +1,191 @@
+#include "nerf/splats/gaussian_fit.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "nerf/base/random.h"
+#include "nerf/kernels/adam.h"
+#include "nerf/scene/camera.h"
+#include "nerf/splats/gaussian_camera.h"
+#include "nerf/splats/target_pictures.h"
+
+namespace nerf {
+namespace {
+
+using kernels::kGaussiansInBlock;
+
+constexpr std::uint64_t kTurnStream = 0x67617573735f5f32ull;
+constexpr std::uint64_t kSplitStream = 0x67617573735f5f33ull;
+constexpr std::uint64_t kBackgroundStream = 0x67617573735f5f34ull;
+// A Gaussian becomes two of this size, a standard deviation of its own apart.
+constexpr float kSplitScale = 1 / 1.5f, kSplitDistance = 0.7f;
+
+// Rows of parameters that share a learning rate.
+struct RowGroup {
+  int first, count;
+  double rate;
+};
+
+// A number of mean 0 and variance 1, by the sum of twelve even ones.
+float RandomNormal(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
+  float sum = -6;
+  for (std::uint64_t k = 0; k < 12; ++k) sum += RandomFloat(seed, stream, 12 * index + k);
+  return sum;
+}
+
+}  // namespace
+
+GaussianFit::GaussianFit(const std::vector<View>& views, bool has_alpha, GaussianCloud initial,
+                         const SplatOptions& options, double near, std::uint64_t seed)
+    : options_(options),
+      has_alpha_(has_alpha),
+      seed_(seed),
+      cloud_(Reordered(initial, SpatialOrder(initial))),
+      first_moment_(torch::zeros_like(cloud_.parameters)),
+      second_moment_(torch::zeros_like(cloud_.parameters)),
+      need_(static_cast<std::size_t>(cloud_.parameters.size(0)) * kGaussiansInBlock, 0.0f) {
+  for (const View& view : views) {
+    whole_.push_back(
+        {TargetOf(view), MakeGaussianCamera(view.camera, view.normalized_from_camera, near)});
+    if (options_.half_resolution == 0) continue;
+    half_.push_back(
+        {Halved(whole_.back().target),
+         MakeGaussianCamera(Downscaled(view.camera, 2), view.normalized_from_camera, near)});
+  }
+  turn_.resize(whole_.size());
+  std::iota(turn_.begin(), turn_.end(), 0u);
+}
+
+// Each photograph once in a random order, then again in another.
+const GaussianFit::Picture& GaussianFit::NextPicture(double progress) {
+  const auto count = static_cast<std::int64_t>(turn_.size());
+  if (step_ % count == 0) {
+    const auto round = static_cast<std::uint64_t>(step_ / count);
+    std::ranges::sort(turn_, {}, [&](std::uint32_t i) {
+      return RandomBits(seed_, kTurnStream, round * turn_.size() + i);
+    });
+  }
+  const std::uint32_t photograph = turn_[step_ % count];
+  return progress < options_.half_resolution ? half_[photograph] : whole_[photograph];
+}
+
+double GaussianFit::Step(double progress) {
+  const Picture& picture = NextPicture(progress);
+  std::array<float, 3> background{};
+  if (has_alpha_) {
+    for (int c = 0; c < 3; ++c) {
+      background[c] =
+          RandomFloat(seed_, kBackgroundStream, static_cast<std::uint64_t>(3 * step_ + c));
+    }
+  }
+  GaussianPicture& drawn = renderer_.Draw(picture.camera, cloud_.Parameters());
+  const double loss =
+      loss_.Evaluate(drawn, picture.target, background, options_.structural, gradient_);
+  ++step_;
+  renderer_.Backward(
+      picture.camera, cloud_.Parameters(), gradient_, false,
+      [&](std::int64_t block, std::span<float> gradients, std::span<const float> on_screen) {
+        UpdateBlock(block, gradients, on_screen, progress);
+      });
+  if (step_ % options_.split_every == 0 && progress < options_.split_until) Split();
+  return loss;
+}
+
+void GaussianFit::UpdateBlock(std::int64_t block, std::span<float> gradients,
+                              std::span<const float> on_screen, double progress) {
+  const double decay = std::pow(options_.last_rate, progress);
+  const RowGroup groups[] = {
+      {kernels::kMeanRow, 3, options_.mean_rate * std::pow(options_.last_mean_rate, progress)},
+      {kernels::kLogScaleRow, 3, options_.scale_rate * decay},
+      {kernels::kRotationRow, 4, options_.rotation_rate * decay},
+      {kernels::kOpacityRow, 1, options_.opacity_rate * decay},
+      {kernels::kColorRow, 3, options_.color_rate * decay},
+      {kernels::kColorRow + 3, kernels::GaussianRows(cloud_.order) - kernels::kColorRow - 3,
+       options_.harmonics_rate * decay}};
+  const std::size_t size = gradients.size();
+  const std::size_t begin = static_cast<std::size_t>(block) * size;
+  float* const parameters = cloud_.parameters.data_ptr<float>() + begin;
+  float* const first = first_moment_.data_ptr<float>() + begin;
+  float* const second = second_moment_.data_ptr<float>() + begin;
+  for (int l = 0; l < kGaussiansInBlock; ++l) {
+    need_[block * kGaussiansInBlock + l] += on_screen[l];
+    const std::size_t at = kernels::kOpacityRow * kGaussiansInBlock + l;
+    const float o = 1 / (1 + std::exp(-parameters[at]));
+    gradients[at] += static_cast<float>(options_.opacity_penalty) * o * (1 - o);
+  }
+  kernels::AdamCoefficients adam;
+  adam.beta2 = 0.999f;
+  const kernels::AdamBiasCorrection correction = kernels::BiasCorrection(adam, step_);
+  for (const RowGroup& group : groups) {
+    if (group.count <= 0) continue;
+    adam.learning_rate = static_cast<float>(group.rate);
+    const std::size_t at = static_cast<std::size_t>(group.first) * kGaussiansInBlock;
+    const std::size_t values = static_cast<std::size_t>(group.count) * kGaussiansInBlock;
+    kernels::AdamStep(adam, correction, {parameters + at, values}, gradients.subspan(at, values),
+                      {first + at, values}, {second + at, values});
+  }
+}
+
+void GaussianFit::Split() {
+  std::vector<std::int64_t> invisible;
+  std::vector<double> total;  // running sum of the need of visible ones
+  const auto least =
+      static_cast<float>(std::log(options_.least_opacity / (1 - options_.least_opacity)));
+  double sum = 0;
+  for (std::int64_t i = 0; i < cloud_.count; ++i) {
+    const bool is_visible = cloud_.At(i, kernels::kOpacityRow) >= least;
+    if (!is_visible) invisible.push_back(i);
+    sum += is_visible ? static_cast<double>(need_[i]) : 0.0;
+    total.push_back(sum);
+  }
+  const auto round = static_cast<std::uint64_t>(step_);
+  std::ranges::sort(invisible, {}, [&](std::int64_t i) {
+    return RandomBits(seed_ ^ round, kSplitStream, static_cast<std::uint64_t>(i));
+  });
+  const auto most =
+      static_cast<std::size_t>(options_.split_share * static_cast<double>(cloud_.count));
+  if (invisible.size() > most) invisible.resize(most);
+  if (sum > 0) {
+    for (const std::int64_t to : invisible) {
+      const double drawn = sum * static_cast<double>(RandomFloat(seed_ ^ round, kSplitStream + 1,
+                                                                 static_cast<std::uint64_t>(to)));
+      const auto from = std::ranges::upper_bound(total, drawn) - total.begin();
+      if (from < cloud_.count) SplitInto(from, to);
+    }
+  }
+  std::ranges::fill(need_, 0.0f);
+}
+
+// Both are smaller than the one before, and apart by a random vector of its distribution.
+void GaussianFit::SplitInto(std::int64_t from, std::int64_t to) {
+  const auto quaternion = [&](int k) { return cloud_.At(from, kernels::kRotationRow + k); };
+  const Eigen::Matrix3f axes =
+      Eigen::Quaternionf(quaternion(0), quaternion(1), quaternion(2), quaternion(3))
+          .normalized()
+          .toRotationMatrix();
+  Eigen::Vector3f along;
+  for (int k = 0; k < 3; ++k) {
+    along[k] = RandomNormal(seed_ ^ static_cast<std::uint64_t>(step_), kSplitStream + 2,
+                            static_cast<std::uint64_t>(3 * to + k)) *
+               std::exp(cloud_.At(from, kernels::kLogScaleRow + k));
+  }
+  const Eigen::Vector3f offset = kSplitDistance * (axes * along);
+  float* const first = first_moment_.data_ptr<float>();
+  float* const second = second_moment_.data_ptr<float>();
+  for (int row = 0; row < kernels::GaussianRows(cloud_.order); ++row) {
+    float value = cloud_.At(from, row);
+    if (row >= kernels::kLogScaleRow && row < kernels::kRotationRow) value += std::log(kSplitScale);
+    cloud_.At(from, row) = value;
+    cloud_.At(to, row) = value;
+    first[cloud_.Offset(from, row)] = first[cloud_.Offset(to, row)] = 0;
+    second[cloud_.Offset(to, row)] = second[cloud_.Offset(from, row)];
+  }
+  for (int k = 0; k < 3; ++k) {
+    cloud_.At(from, kernels::kMeanRow + k) -= offset[k];
+    cloud_.At(to, kernels::kMeanRow + k) += offset[k];
+  }
+}
+
+}  // namespace nerf

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "nerf/scene/view.h"
+#include "nerf/splats/gaussian_cloud.h"
+#include "nerf/splats/picture_loss.h"
+#include "nerf/splats/splat_options.h"
+
+namespace nerf {
+
+// Fits Gaussians to photographs: Adam on the loss of one whole photograph after another, first at
+// half the resolution; Gaussians that became invisible are put where the picture asks for more:
+// they split those of which the position has the largest gradients. With the same seed the result
+// is the same bits, for any number of threads. Source: Kerbl et al. 2023, "3D Gaussian Splatting
+// for Real-Time Radiance Field Rendering".
+class GaussianFit {
+ public:
+  //   views      must outlive this
+  //   has_alpha  then the background is random, as in the field's training; else black
+  GaussianFit(const std::vector<View>& views, bool has_alpha, GaussianCloud initial,
+              const SplatOptions& options, double near, std::uint64_t seed);
+
+  // One iteration.
+  //   progress  of the whole fit, 0 to 1: by steps or by time
+  //   returns   the loss
+  double Step(double progress);
+
+  const GaussianCloud& Cloud() const { return cloud_; }
+  std::int64_t Steps() const { return step_; }
+
+ private:
+  // A photograph at one resolution.
+  struct Picture {
+    TargetPicture target;
+    kernels::GaussianCamera camera;
+  };
+  const Picture& NextPicture(double progress);
+  void UpdateBlock(std::int64_t block, std::span<float> gradients, std::span<const float> on_screen,
+                   double progress);
+  void Split();
+  void SplitInto(std::int64_t from, std::int64_t to);
+
+  SplatOptions options_;
+  bool has_alpha_;
+  std::uint64_t seed_;
+  std::vector<Picture> whole_, half_;
+  std::vector<std::uint32_t> turn_;  // the order of the photographs
+  GaussianCloud cloud_;
+  torch::Tensor first_moment_, second_moment_;  // of Adam, as the parameters
+  std::vector<float> need_;                     // gradient on the screen since the last split
+  GaussianRenderer renderer_;
+  PictureLoss loss_;
+  GaussianPicture gradient_;
+  std::int64_t step_ = 0;
+};
+
+}  // namespace nerf

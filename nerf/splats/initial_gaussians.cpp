@@ -1,0 +1,86 @@
+#include "nerf/splats/initial_gaussians.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nanoflann.hpp>
+#include <numeric>
+
+#include "nerf/base/parallel.h"
+#include "nerf/base/random.h"
+
+namespace nerf {
+namespace {
+
+constexpr std::uint64_t kSubsetStream = 0x67617573735f5f31ull;
+constexpr std::size_t kNeighbours = 3;
+constexpr double kSmallest = 1e-4, kLargest = 1;  // normalized units
+constexpr double kOpacity = 0.1;
+constexpr float kConstantHarmonic = 0.28209479f;
+
+// What nanoflann asks of a set of points.
+struct PointSet {
+  const std::vector<ColoredPoint>& points;
+
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t k) const {
+    return points[i].x_in_normalized[static_cast<Eigen::Index>(k)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>,
+                                                 PointSet, 3>;
+
+// The root of the mean squared distance to the nearest other points.
+std::vector<double> Spacing(const std::vector<ColoredPoint>& points) {
+  const PointSet set{points};
+  const Tree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  std::vector<double> spacing(points.size(), kLargest);
+  ParallelFor(static_cast<std::int64_t>(points.size()), 256,
+              [&](std::int64_t first, std::int64_t last) {
+                for (std::int64_t i = first; i < last; ++i) {
+                  std::array<std::uint32_t, kNeighbours + 1> index{};
+                  std::array<double, kNeighbours + 1> squared{};
+                  const std::size_t found = tree.knnSearch(
+                      points[i].x_in_normalized.data(), index.size(), index.data(), squared.data());
+                  if (found < 2) continue;
+                  const double sum = std::accumulate(squared.begin(), squared.begin() + static_cast<std::ptrdiff_t>(found), 0.0);
+                  spacing[i] = std::sqrt(sum / static_cast<double>(found - 1));
+                }
+              });
+  return spacing;
+}
+
+}  // namespace
+
+GaussianCloud GaussiansAtPoints(const std::vector<ColoredPoint>& points, std::int64_t count,
+                                int order, std::uint64_t seed) {
+  std::vector<std::size_t> chosen(points.size());
+  std::iota(chosen.begin(), chosen.end(), 0);
+  if (static_cast<std::int64_t>(points.size()) > count) {
+    std::ranges::sort(chosen, {},
+                      [&](std::size_t i) { return RandomBits(seed, kSubsetStream, i); });
+    chosen.resize(static_cast<std::size_t>(count));
+    std::ranges::sort(chosen);
+  }
+  std::vector<ColoredPoint> used;
+  for (const std::size_t i : chosen) used.push_back(points[i]);
+  const std::vector<double> spacing = Spacing(used);
+  GaussianCloud cloud(count, order);
+  for (std::int64_t i = 0; i < static_cast<std::int64_t>(used.size()); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      cloud.At(i, kernels::kMeanRow + k) = static_cast<float>(used[i].x_in_normalized[k]);
+      cloud.At(i, kernels::kLogScaleRow + k) =
+          static_cast<float>(std::log(std::clamp(spacing[i], kSmallest, kLargest)));
+      cloud.At(i, kernels::kColorRow + k) = (used[i].rgb[k] - 0.5f) / kConstantHarmonic;
+    }
+    cloud.At(i, kernels::kOpacityRow) = static_cast<float>(std::log(kOpacity / (1 - kOpacity)));
+  }
+  return cloud;
+}
+
+}  // namespace nerf

@@ -1,0 +1,181 @@
+#include "nerf/splats/picture_loss.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "nerf/base/parallel.h"
+#include "nerf/kernels/picture_loss.h"
+
+namespace nerf {
+namespace {
+
+using kernels::kProducts;
+using kernels::kWindowRadius;
+using kernels::RowsAround;
+
+constexpr std::int64_t kRowsAtOnce = 8;
+
+// Rows of one plane in a buffer of planes.
+class Rows {
+ public:
+  Rows(std::vector<float>& values, int plane, int height, int stride)
+      : first_(&values[static_cast<std::size_t>(plane) * height * stride]),
+        height_(height),
+        stride_(stride) {}
+
+  std::span<float> At(int y) const {
+    return {first_ + static_cast<std::ptrdiff_t>(y) * stride_, static_cast<std::size_t>(stride_)};
+  }
+  RowsAround Around(int y) const {
+    RowsAround around;
+    for (int k = -kWindowRadius; k <= kWindowRadius; ++k) {
+      if (y + k < 0 || y + k >= height_) continue;
+      around.rows[kWindowRadius + k] = At(y + k).data();
+    }
+    return around;
+  }
+
+ private:
+  float* first_;
+  int height_, stride_;
+};
+
+// Calls use(channel, y) for all rows of three channels, in parallel.
+template <class Use>
+void ForEachRow(int height, const Use& use) {
+  const std::int64_t groups = (height + kRowsAtOnce - 1) / kRowsAtOnce;
+  ParallelForEach(3 * groups, [&](std::int64_t item) {
+    const int channel = static_cast<int>(item / groups);
+    const auto first = static_cast<int>(item % groups * kRowsAtOnce);
+    const int last = std::min(height, first + static_cast<int>(kRowsAtOnce));
+    for (int y = first; y < last; ++y) use(channel, y);
+  });
+}
+
+}  // namespace
+
+void TargetPicture::Resize(int new_width, int new_height) {
+  width = new_width;
+  height = new_height;
+  stride = (width + GaussianPicture::kRowPadding - 1) / GaussianPicture::kRowPadding *
+           GaussianPicture::kRowPadding;
+  values.assign(static_cast<std::size_t>(kPlanes) * height * stride, 0.0f);
+}
+
+TargetPicture Halved(const TargetPicture& picture) {
+  TargetPicture half;
+  half.Resize(picture.width / 2, picture.height / 2);
+  for (int y = 0; y < half.height; ++y) {
+    for (int x = 0; x < half.width; ++x) {
+      float weight = 0, sums[4] = {};
+      for (const int v : {2 * y, 2 * y + 1}) {
+        for (const int u : {2 * x, 2 * x + 1}) {
+          const float w = picture.Row(TargetPicture::kWeight, v)[u];
+          weight += w;
+          for (int plane = 0; plane < 4; ++plane) sums[plane] += w * picture.Row(plane, v)[u];
+        }
+      }
+      if (weight == 0) continue;
+      half.Row(TargetPicture::kWeight, y)[x] = weight / 4;
+      for (int plane = 0; plane < 4; ++plane) half.Row(plane, y)[x] = sums[plane] / weight;
+    }
+  }
+  return half;
+}
+
+void PictureLoss::Composite(GaussianPicture& drawn, const TargetPicture& target,
+                            const std::array<float, 3>& background) {
+  truth_.resize(static_cast<std::size_t>(3) * target.height * target.stride);
+  ForEachRow(target.height, [&](int channel, int y) {
+    const float* const T = drawn.Plane(GaussianPicture::kTransmittance) +
+                           static_cast<std::ptrdiff_t>(y) * drawn.stride;
+    float* const rgb = drawn.Plane(channel) + static_cast<std::ptrdiff_t>(y) * drawn.stride;
+    const std::span<float> truth = Rows(truth_, channel, target.height, target.stride).At(y);
+    const float* const shown = target.Row(channel, y);
+    const float* const opacity = target.Row(TargetPicture::kOpacity, y);
+    for (int x = 0; x < target.width; ++x) {
+      rgb[x] += T[x] * background[channel];
+      truth[x] = shown[x] * opacity[x] + (1 - opacity[x]) * background[channel];
+    }
+  });
+}
+
+double PictureLoss::Evaluate(GaussianPicture& drawn, const TargetPicture& target,
+                             const std::array<float, 3>& background, double structural,
+                             GaussianPicture& gradient) {
+  const int height = target.height, stride = target.stride;
+  const auto width = static_cast<std::size_t>(target.width);
+  Composite(drawn, target, background);
+  gradient.Resize(drawn.width, drawn.height);
+  products_.resize(static_cast<std::size_t>(3) * kProducts * height * stride);
+  derivatives_.resize(static_cast<std::size_t>(3) * 3 * height * stride);
+  const auto truth = [&](int channel) { return Rows(truth_, channel, height, stride); };
+  const auto product = [&](int channel, int k) {
+    return Rows(products_, channel * kProducts + k, height, stride);
+  };
+  const auto derivative = [&](int channel, int k) {
+    return Rows(derivatives_, channel * 3 + k, height, stride);
+  };
+  const auto drawn_row = [&](int channel, int y) {
+    return std::span<const float>(
+        drawn.Plane(channel) + static_cast<std::ptrdiff_t>(y) * drawn.stride, width);
+  };
+  const auto padded = static_cast<std::size_t>(stride);
+  const bool is_structural = structural > 0;
+  std::vector<double> similar(static_cast<std::size_t>(3) * height, 0.0), plain(similar.size());
+  if (is_structural) {
+    ForEachRow(height, [&](int channel, int y) {
+      kernels::ProductRows rows;
+      for (int k = 0; k < kProducts; ++k) rows[k] = product(channel, k).At(y);
+      kernels::BlurProducts(drawn_row(channel, y), truth(channel).At(y).first(width), rows);
+    });
+  }
+  std::ranges::fill(derivatives_, 0.0f);
+  if (is_structural) {
+    ForEachRow(height, [&](int channel, int y) {
+      std::array<RowsAround, kProducts> around;
+      for (int k = 0; k < kProducts; ++k) around[k] = product(channel, k).Around(y);
+      kernels::DerivativeRows rows;
+      for (int k = 0; k < 3; ++k) rows[k] = derivative(channel, k).At(y);
+      similar[channel * height + y] = kernels::SimilarityDerivatives(
+          around, {target.Row(TargetPicture::kWeight, y), padded}, rows);
+    });
+  }
+  ForEachRow(height, [&](int channel, int y) {
+    std::array<RowsAround, 3> around;
+    for (int k = 0; k < 3; ++k) around[k] = derivative(channel, k).Around(y);
+    float* const row = gradient.Plane(channel) + static_cast<std::ptrdiff_t>(y) * gradient.stride;
+    plain[channel * height + y] = kernels::PictureLossGradient(
+        around, {drawn_row(channel, y).data(), padded}, truth(channel).At(y),
+        {target.Row(TargetPicture::kWeight, y), padded}, static_cast<float>(structural),
+        {row, padded});
+    std::fill(row + width, row + padded, 0.0f);
+  });
+  // By the transmittance, through the background.
+  float* const by_T = gradient.Plane(GaussianPicture::kTransmittance);
+  const std::size_t plane = static_cast<std::size_t>(gradient.rows) * gradient.stride;
+  for (int channel = 0; channel < 3; ++channel) {
+    std::fill(gradient.Plane(channel) + static_cast<std::ptrdiff_t>(height) * gradient.stride,
+              gradient.Plane(channel) + plane, 0.0f);
+  }
+  std::fill_n(gradient.Plane(GaussianPicture::kDistance), plane, 0.0f);
+  ParallelFor(static_cast<std::int64_t>(plane), 4096, [&](std::int64_t first, std::int64_t last) {
+    for (std::int64_t i = first; i < last; ++i) {
+      by_T[i] = 0;
+      for (int channel = 0; channel < 3; ++channel) {
+        by_T[i] += background[channel] * gradient.Plane(channel)[i];
+      }
+    }
+  });
+  double weights = 0;
+  for (int y = 0; y < height; ++y) {
+    const float* const row = target.Row(TargetPicture::kWeight, y);
+    weights = std::accumulate(row, row + width, weights);
+  }
+  const double sum =
+      std::accumulate(plain.begin(), plain.end(), 0.0) +
+      structural * (3 * weights - std::accumulate(similar.begin(), similar.end(), 0.0));
+  return weights > 0 ? sum / (3 * weights) : 0;
+}
+
+}  // namespace nerf

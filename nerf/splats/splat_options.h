@@ -1,0 +1,55 @@
+#pragma once
+
+#include "nerf/base/options.h"
+
+namespace nerf {
+
+// How Gaussians are fitted to photographs (nerf/splats/gaussian_fit.h).
+struct SplatOptions {
+  int count = 50000;
+  int harmonics_order = 3;
+  double structural = 0.2;
+  double half_resolution = 0.3;
+  double split_until = 0.7;
+  int split_every = 50;
+  double split_share = 0.05;
+  double least_opacity = 0.02;
+  double opacity_penalty = 0.04;
+  double mean_rate = 1e-2;
+  double scale_rate = 4e-2;
+  double rotation_rate = 2e-2;
+  double opacity_rate = 0.1;
+  double color_rate = 2e-2;
+  double harmonics_rate = 2e-3;
+  double last_rate = 0.1;
+  double last_mean_rate = 0.01;
+
+  template <class Self, class Visitor>
+  static void Options(Self& o, Visitor&& option) {
+    option("count", o.count, "", Between(16, 1 << 24), "Gaussians");
+    option("harmonics_order", o.harmonics_order, "", Between(0, 3),
+           "of the spherical harmonics by which colour depends on direction");
+    option("structural", o.structural, "", Between(0, 1), "share of 1 - SSIM in the loss");
+    option("half_resolution", o.half_resolution, "of the training", Between(0, 1),
+           "at first, at half the resolution");
+    option("split_until", o.split_until, "of the training", Between(0, 1),
+           "until then invisible Gaussians split others");
+    option("split_every", o.split_every, "iterations", Between(1, 1 << 20), "between two splits");
+    option("split_share", o.split_share, "of the Gaussians", Between(0, 1),
+           "at most, split at a time");
+    option("least_opacity", o.least_opacity, "", Between(0, 1), "below it a Gaussian is invisible");
+    option("opacity_penalty", o.opacity_penalty, "of the loss", AtLeast(0),
+           "on the opacity of each Gaussian");
+    option("mean_rate", o.mean_rate, "normalized units", AtLeast(0), "learning rate of positions");
+    option("scale_rate", o.scale_rate, "", AtLeast(0), "of the logarithms of sizes");
+    option("rotation_rate", o.rotation_rate, "", AtLeast(0), "of rotations");
+    option("opacity_rate", o.opacity_rate, "", AtLeast(0), "of opacities before the sigmoid");
+    option("color_rate", o.color_rate, "", AtLeast(0), "of colours");
+    option("harmonics_rate", o.harmonics_rate, "", AtLeast(0), "of the higher harmonics");
+    option("last_rate", o.last_rate, "", AboveUpTo(0, 1),
+           "learning rates at the end, of the first");
+    option("last_mean_rate", o.last_mean_rate, "", AboveUpTo(0, 1), "of positions at the end");
+  }
+};
+
+}  // namespace nerf

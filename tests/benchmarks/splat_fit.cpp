@@ -1,0 +1,114 @@
+// Fits Gaussians to a capture for some seconds, and prints the PSNR on validation and held-out
+// photographs:
+//   splat_fit INPUT DOWNSCALE SECONDS [splat option=value ...]
+#include <fmt/core.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "nerf/base/peak_memory.h"
+#include "nerf/base/stopwatch.h"
+#include "nerf/pipeline/prepared_scene.h"
+#include "nerf/splats/gaussian_camera.h"
+#include "nerf/splats/gaussian_fit.h"
+#include "nerf/splats/initial_gaussians.h"
+#include "nerf/splats/target_pictures.h"
+
+namespace nerf {
+namespace {
+
+constexpr double kNear = 0.02;
+
+double Psnr(const std::vector<View>& views, bool has_alpha, const GaussianCloud& cloud) {
+  GaussianRenderer renderer;
+  double sum = 0;
+  for (const View& view : views) {
+    const TargetPicture target = TargetOf(view);
+    const GaussianPicture& drawn = renderer.Draw(
+        MakeGaussianCamera(view.camera, view.normalized_from_camera, kNear), cloud.Parameters());
+    const float background = has_alpha ? 1.0f : 0.0f;
+    double error = 0, count = 0;
+    for (int y = 0; y < target.height; ++y) {
+      for (int x = 0; x < target.width; ++x) {
+        if (target.Row(TargetPicture::kWeight, y)[x] == 0) continue;
+        const float T = drawn.Plane(3)[y * drawn.stride + x];
+        const float opacity = target.Row(TargetPicture::kOpacity, y)[x];
+        for (int c = 0; c < 3; ++c) {
+          const auto rounded = [](float v) { return std::round(std::clamp(v, 0.0f, 1.0f) * 255) / 255; };
+          const float shown = target.Row(c, y)[x] * opacity + (1 - opacity) * background;
+          const float d = rounded(drawn.Plane(c)[y * drawn.stride + x] + T * background) - rounded(shown);
+          error += d * d;
+          ++count;
+        }
+      }
+    }
+    sum += -10 * std::log10(error / count);
+  }
+  return views.empty() ? 0 : sum / static_cast<double>(views.size());
+}
+
+void SetOption(SplatOptions& options, const std::string& assignment) {
+  const auto at = assignment.find('=');
+  const std::string name = assignment.substr(0, at);
+  const double value = std::stod(assignment.substr(at + 1));
+  bool found = false;
+  SplatOptions::Options(options, [&](const char* key, auto& field, const auto&...) {
+    if (name != key) return;
+    field = static_cast<std::remove_reference_t<decltype(field)>>(value);
+    found = true;
+  });
+  if (!found) throw std::runtime_error(name);
+}
+
+void Run(int argc, char** argv) {
+  DataOptions data;
+  data.downscale = std::stoi(argv[2]);
+  const double seconds = std::stod(argv[3]);
+  SplatOptions options;
+  for (int i = 4; i < argc; ++i) SetOption(options, argv[i]);
+  const PipelineListener listener = [](const auto&) {};
+  PreparedScene scene = PrepareScene(argv[1], "out/splat_fit", data, listener);
+  const Dataset train = LoadDataset(scene.posed, data, {}, scene.normalized_from_world);
+  PosedImages held_out = scene.posed;
+  for (PosedImage& image : held_out.images) {
+    if (image.split == Split::kTest) image.split = Split::kValidation;
+    else if (image.split == Split::kValidation) image.split = Split::kTest;
+  }
+  const Dataset test = LoadDataset(held_out, data, {}, scene.normalized_from_world);
+  const Stopwatch watch;
+  std::vector<ColoredPoint> points;
+  for (const SparsePoint& point : scene.posed.points) {
+    points.push_back({scene.normalized_from_world.NormalizedFromWorld(point.x_in_world),
+                      Eigen::Vector3f(point.rgb[0], point.rgb[1], point.rgb[2]) / 255});
+  }
+  if (points.empty()) {
+    for (int i = 0; i < options.count / 2; ++i) points.push_back({Eigen::Vector3d::Random() * 0.7, {0.5f, 0.5f, 0.5f}});
+  }
+  GaussianFit fit(train.train, train.has_alpha,
+                  GaussiansAtPoints(points, options.count, options.harmonics_order, 1), options,
+                  kNear, 1);
+  fmt::print("{} points, set up in {:.2f} s, {} train views\n", points.size(), watch.Seconds(), train.train.size());
+  double next = seconds / 4;
+  const Stopwatch training;
+  double pause = 0;
+  while (true) {
+    const double spent = training.Seconds() - pause;
+    if (spent >= next || spent >= seconds) {
+      const Stopwatch evaluating;
+      fmt::print("{:6.1f} s {:6} iterations, {:.1f} ms each: validation {:.2f}, held out {:.2f} dB\n",
+                 spent, fit.Steps(), 1e3 * spent / std::max<std::int64_t>(1, fit.Steps()), Psnr(train.validation, train.has_alpha, fit.Cloud()),
+                 Psnr(test.validation, train.has_alpha, fit.Cloud()));
+      std::fflush(stdout);
+      pause += evaluating.Seconds();
+      next += seconds / 4;
+      if (spent >= seconds) break;
+    }
+    fit.Step(std::min(1.0, spent / seconds));
+  }
+  fmt::print("training views {:.2f} dB, peak {:.0f} MB\n", Psnr(train.train, train.has_alpha, fit.Cloud()), PeakMegabytes());
+}
+
+}  // namespace
+}  // namespace nerf
+
+int main(int argc, char** argv) { nerf::Run(argc, argv); }
