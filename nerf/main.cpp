@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
   app.footer("nerf COMMAND --help shows the flags of a command, with examples.");
   try {
     nerf::AddTrainCommand(app);
+    nerf::AddSplatCommand(app);
     nerf::AddRenderCommand(app);
     nerf::AddEvalCommand(app);
     nerf::AddPosesCommand(app);

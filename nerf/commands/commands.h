@@ -12,6 +12,7 @@ void AddPosesCommand(CLI::App& app);
 void AddPhotometricStereoCommand(CLI::App& app);
 void AddRelightCommand(CLI::App& app);
 void AddTrainCommand(CLI::App& app);
+void AddSplatCommand(CLI::App& app);
 void AddRenderCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);
 void AddSelfcheckCommand(CLI::App& app);

@@ -14,6 +14,7 @@
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/evaluation_report.h"
+#include "nerf/commands/model_choice.h"
 #include "nerf/commands/threads.h"
 #include "nerf/commands/training_display.h"
 #include "nerf/image/image_io.h"
@@ -31,6 +32,7 @@ struct EvalArguments {
   std::string run;
   std::string output;
   std::string split = "test";
+  std::string with = "field";
   double quality = 1;
   bool fit_exposure = false;
   std::optional<int> downscale;
@@ -68,8 +70,8 @@ void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const
 }
 
 // Evaluates the views of the split and writes the contact sheet.
-Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
-                         const fs::path& output) {
+Evaluation EvaluateViews(const OpenedRun& run, const SceneModel& model,
+                         const EvalArguments& arguments, const fs::path& output) {
   const std::vector<const PosedImage*> images = ImagesOf(run.posed, SplitFromName(arguments.split));
   if (images.empty()) {
     throw InputError("{}: the run has no {} images; choose another --split", arguments.run,
@@ -81,16 +83,15 @@ Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
   ProgressLine progress("evaluating", static_cast<std::int64_t>(images.size()));
   std::vector<ContactSheetRow> rows;
   std::int64_t done = 0;
-  const Evaluation evaluation =
-      Evaluate(*run.model, run.posed, images,
-               {arguments.quality, arguments.fit_exposure, arguments.downscale},
-               [&](const EvaluatedView& view) {
-                 const std::string psnr = fmt::format("{:.2f} dB", view.score->psnr);
-                 if (rows.size() < kMaxRows) {
-                   rows.push_back({view.image->name + "  " + psnr, *view.truth, *view.rendering});
-                 }
-                 progress.Update(++done, psnr);
-               });
+  const Evaluation evaluation = Evaluate(
+      model, run.posed, images, {arguments.quality, arguments.fit_exposure, arguments.downscale},
+      [&](const EvaluatedView& view) {
+        const std::string psnr = fmt::format("{:.2f} dB", view.score->psnr);
+        if (rows.size() < kMaxRows) {
+          rows.push_back({view.image->name + "  " + psnr, *view.truth, *view.rendering});
+        }
+        progress.Update(++done, psnr);
+      });
   progress.Finish();
   if (evaluation.scores.empty()) {
     throw InputError("{}: none of the {} {} images could be read; the first: {}", arguments.run,
@@ -108,6 +109,7 @@ Evaluation EvaluateViews(const OpenedRun& run, const EvalArguments& arguments,
 void RunEval(const EvalArguments& arguments) {
   UseThreads(arguments.threads);
   const OpenedRun run = OpenRun(arguments.run);
+  const std::shared_ptr<const SceneModel> model = ChosenModel(run, arguments.with, arguments.run);
   run.model->Renderer(arguments.quality);  // checks the quality before a folder is created
   const fs::path output =
       arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
@@ -116,14 +118,15 @@ void RunEval(const EvalArguments& arguments) {
     EvaluateEffects(run, arguments, output);
     return;
   }
-  const Evaluation evaluation = EvaluateViews(run, arguments, output);
+  const Evaluation evaluation = EvaluateViews(run, *model, arguments, output);
   nlohmann::json result = JsonFromEvaluation(evaluation);
   result.update(
       {{"split", arguments.split},
        {"downscale", arguments.downscale.value_or(run.model->GetModel().config.data.downscale)},
        {"quality", arguments.quality},
        {"exposure_fitted", evaluation.exposure_fitted},
-       {"step", run.model->Step()},
+       {"step", model->Step()},
+       {"with", arguments.with},
        {"training_seconds", run.training_seconds},
        {"left_out", evaluation.unreadable.size()}});
   // File names may not be valid UTF-8.
@@ -151,6 +154,7 @@ void AddEvalCommand(CLI::App& app) {
   command->add_option("--split", arguments->split, "which images: test, validation, train")
       ->check(CLI::IsMember({"test", "validation", "train"}))
       ->capture_default_str();
+  AddModelChoice(*command, arguments->with);
   command
       ->add_option("--quality", arguments->quality,
                    "0 (fast) to 1 (exact); costs and errors are in docs/rendering.md")
@@ -171,6 +175,7 @@ void AddEvalCommand(CLI::App& app) {
       "PSNR and SSIM are of images as they would be saved (8-bit sRGB).\n"
       "Examples:\n"
       "  nerf eval runs/fox\n"
+      "  nerf eval runs/fox --with splats\n"
       "  nerf eval runs/fox --effects\n"
       "  nerf eval runs/fox --split train --json");
   command->callback([arguments] { RunEval(*arguments); });

@@ -13,6 +13,7 @@
 #include "nerf/base/input_error.h"
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
+#include "nerf/commands/model_choice.h"
 #include "nerf/commands/shots.h"
 #include "nerf/commands/threads.h"
 #include "nerf/effects/exposure_fit.h"
@@ -34,6 +35,7 @@ struct RenderArguments {
   std::string run;
   std::string output;
   ShotOptions shots;
+  std::string with = "field";
   std::optional<double> fps;
   std::string format = "png";
   bool depth = false;
@@ -93,6 +95,12 @@ double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArgumen
 }
 
 void CheckArguments(const RenderArguments& arguments) {
+  if (arguments.with == "splats" &&
+      (arguments.preview || arguments.seconds_per_frame || arguments.quality != 1)) {
+    throw InputError(
+        "--with splats: Gaussians are always drawn exactly, in milliseconds; leave out --quality, "
+        "--seconds-per-frame and --preview");
+  }
   if (arguments.shots.downscale && *arguments.shots.downscale < 1) {
     throw InputError("--downscale {}: use 1 or more", *arguments.shots.downscale);
   }
@@ -108,8 +116,8 @@ void CheckArguments(const RenderArguments& arguments) {
 }
 
 // Renders all views; with --preview each one coarse first.
-void RenderShots(const OpenedRun& run, const ShotList& list, const RenderArguments& arguments,
-                 const fs::path& output) {
+void RenderShots(const OpenedRun& run, const SceneModel& model, const ShotList& list,
+                 const RenderArguments& arguments, const fs::path& output) {
   const SceneFacts& scene = run.model->Scene();
   std::optional<std::array<float, 3>> gains;
   if (!arguments.exposure_of.empty()) {
@@ -132,9 +140,8 @@ void RenderShots(const OpenedRun& run, const ShotList& list, const RenderArgumen
                         background, scene.encoding));
     }
     RenderedView view =
-        run.model->Render({shot.camera, shot.world_from_camera, quality, [&](std::int64_t of_view) {
-                             progress.Update(done + of_view, shot.name);
-                           }});
+        model.Render({shot.camera, shot.world_from_camera, quality,
+                      [&](std::int64_t of_view) { progress.Update(done + of_view, shot.name); }});
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
     if (gains) Expose(*gains, background, view);
     WriteShot(view, scene, arguments, output / shot.name);
@@ -157,6 +164,7 @@ void RunRender(const RenderArguments& arguments) {
   UseThreads(arguments.threads);
   CheckArguments(arguments);
   const OpenedRun run = OpenRun(arguments.run);
+  const std::shared_ptr<const SceneModel> model = ChosenModel(run, arguments.with, arguments.run);
   if (!arguments.exposure_of.empty()) GainsOf(run.model->GetModel(), arguments.exposure_of);
   const ShotList list = ChooseShots(run, arguments.shots, arguments.run);
   const fs::path output = arguments.output.empty()
@@ -169,7 +177,7 @@ void RunRender(const RenderArguments& arguments) {
                           .translation(),
                       shot.name);
   }
-  RenderShots(run, list, arguments, output);
+  RenderShots(run, *model, list, arguments, output);
   fmt::print("{} views in {}\n", list.shots.size(), output.string());
   WriteFilm(list, arguments, output);
 }
@@ -181,6 +189,7 @@ void AddRenderCommand(CLI::App& app) {
   const auto arguments = std::make_shared<RenderArguments>();
   command->add_option("run", arguments->run, "run folder")->required();
   command->add_option("-o,--output", arguments->output, "output folder [RUN/renders/...]");
+  AddModelChoice(*command, arguments->with);
   auto* image =
       command->add_option("--image", arguments->shots.image, "the view of this photograph");
   auto* pose = command->add_option("--pose", arguments->shots.pose,
@@ -222,6 +231,7 @@ void AddRenderCommand(CLI::App& app) {
       "  nerf render runs/fox\n"
       "  nerf render runs/fox --path orbit --frames 60 --downscale 8\n"
       "  nerf render runs/fox --path orbit --seconds-per-frame 0.3\n"
+      "  nerf render runs/fox --path orbit --with splats\n"
       "  nerf render runs/fox --pose pose.json --format exr --depth\n"
       "  nerf render runs/fox --path camera_path.json -o film");
   command->callback([arguments] { RunRender(*arguments); });

@@ -175,6 +175,22 @@ void TrainingDisplay::Show(const StepTaken& event) {
                                       rays_per_second_ / 1e3, QualityAndCost(*event.curve)));
 }
 
+void TrainingDisplay::Show(const SurfacesRendered& event) {
+  if (!progress_) {
+    progress_.emplace("surfaces of the field", static_cast<std::int64_t>(event.views));
+  }
+  progress_->Update(static_cast<std::int64_t>(event.done));
+  if (event.done == event.views) progress_.reset();
+}
+
+void TrainingDisplay::Show(const GaussiansStepped& event) {
+  constexpr std::int64_t kParts = 1000;
+  if (!progress_) progress_.emplace("fitting Gaussians", kParts);
+  if (!ProgressLine::IsTerminal()) return;
+  progress_->Update(std::llround(event.fraction * kParts),
+                    fmt::format("iteration {}, loss {:.4f}", event.step, event.loss));
+}
+
 void TrainingDisplay::Show(const TrainingEnded& event) {
   progress_.reset();
   const TrainSummary& summary = event.summary;

@@ -15,6 +15,8 @@ std::string DescribeFrames(const sfm::FilmFrames& frames, const std::filesystem:
 class TrainingDisplay {
  public:
   void operator()(const PipelineEvent& event);
+  // Clears the progress line.
+  void Finish() { progress_.reset(); }
 
  private:
   void Show(const Warning& event);
@@ -34,6 +36,8 @@ class TrainingDisplay {
   void Show(const PosesRefined& event);
   void Show(const TrainingEnded& event);
   void Show(const TrainerEvent& event);
+  void Show(const SurfacesRendered& event);
+  void Show(const GaussiansStepped& event);
   void Show(const StepTaken& event);
 
   TrainOptions train_;

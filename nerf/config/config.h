@@ -9,6 +9,7 @@
 
 #include "nerf/config/field_options.h"
 #include "nerf/config/options_json.h"
+#include "nerf/config/splat_options.h"
 #include "nerf/config/train_options.h"
 #include "nerf/effects/effects.h"
 #include "nerf/kernels/hash_encoding.h"
@@ -34,6 +35,7 @@ struct Config {
   OptimizerOptions optimizer;
   ScheduleOptions schedule;
   TrainOptions train;
+  SplatOptions splats;
 
   template <class Self, class Visitor>
   static void Options(Self& c, Visitor&& option) {
@@ -49,6 +51,7 @@ struct Config {
     option("optimizer", c.optimizer, "Adam");
     option("schedule", c.schedule, "learning rate over the training");
     option("train", c.train, "length, batches, checkpoints");
+    option("splats", c.splats, "Gaussians");
   }
 };
 

@@ -60,14 +60,13 @@ std::vector<const PosedImage*> ImagesOf(const PosedImages& posed, Split split) {
   return images;
 }
 
-Evaluation Evaluate(const ModelSnapshot& model, const PosedImages& posed,
+Evaluation Evaluate(const SceneModel& model, const PosedImages& posed,
                     const std::vector<const PosedImage*>& images, const EvaluationOptions& options,
                     const std::function<void(const EvaluatedView&)>& listener) {
-  const Config& config = model.GetModel().config;
+  const Config& config = model.GetConfig();
   const SceneFacts& scene = model.Scene();
   const int downscale = options.downscale.value_or(config.data.downscale);
   const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
-  const std::shared_ptr<const RayRenderer> renderer = model.Renderer(options.quality);
   Evaluation evaluation;
   evaluation.exposure_fitted = options.fit_exposure || config.effects.exposure;
   for (const PosedImage* image : images) {
@@ -82,10 +81,8 @@ Evaluation Evaluate(const ModelSnapshot& model, const PosedImages& posed,
     const Image truth = OnWhite(photograph.pixels);
     reading.Lap(evaluation.cost.reading);
     const Stopwatch watch;
-    RenderedView view =
-        RenderView(*renderer, Downscaled(posed.cameras[image->camera], downscale),
-                   scene.normalized_from_world.NormalizedFromCamera(image->world_from_camera),
-                   background, scene.encoding);
+    RenderedView view = model.Render({Downscaled(posed.cameras[image->camera], downscale),
+                                      image->world_from_camera, options.quality});
     const double seconds = watch.Seconds();
     evaluation.cost.Add(view);
     if (evaluation.exposure_fitted) {

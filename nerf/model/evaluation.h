@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "nerf/model/snapshot.h"
+#include "nerf/model/scene_model.h"
 #include "nerf/scene/posed_images.h"
 
 namespace nerf {
@@ -68,7 +68,7 @@ std::vector<const PosedImage*> ImagesOf(const PosedImages& posed, Split split);
 //   posed   with refined poses, if the model has them (OpenRun, RefinedPoses)
 //   images  point into `posed`
 // Throws InputError if quality is not in [0, 1].
-Evaluation Evaluate(const ModelSnapshot& model, const PosedImages& posed,
+Evaluation Evaluate(const SceneModel& model, const PosedImages& posed,
                     const std::vector<const PosedImage*>& images, const EvaluationOptions& options,
                     const std::function<void(const EvaluatedView&)>& listener = {});
 

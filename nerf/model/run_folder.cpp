@@ -19,6 +19,15 @@ fs::path FramesPath(const fs::path& run) { return run / "frames"; }
 fs::path ColmapPath(const fs::path& run) { return run / "colmap"; }
 fs::path PointsPath(const fs::path& run) { return run / "points"; }
 fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
+fs::path GaussiansPath(const fs::path& run) { return run / "splats.nerf"; }
+
+std::shared_ptr<const GaussianModel> OpenGaussians(const fs::path& run) {
+  if (!fs::exists(GaussiansPath(run))) {
+    throw InputError("{}: contains no splats.nerf; make Gaussians first: nerf splat {}",
+                     run.string(), run.string());
+  }
+  return std::make_shared<const GaussianModel>(ReadGaussians(GaussiansPath(run)));
+}
 
 Checkpoint ReadRunCheckpoint(const fs::path& run) {
   if (!fs::exists(CheckpointPath(run))) {

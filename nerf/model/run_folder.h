@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "nerf/model/gaussian_model.h"
 #include "nerf/model/snapshot.h"
 #include "nerf/scene/posed_images.h"
 
@@ -15,6 +16,7 @@ namespace nerf {
 //   metrics.jsonl            one line per validation
 //   frames/                  the frames of a film
 //   colmap/                  COLMAP's files, if poses were found from photographs
+//   splats.nerf              Gaussians, if nerf splat made them
 //   points/                  the same, if sparse points were found for poses that were given
 //   picture.png              a photograph and its rendering, at the end of training
 //   refined_transforms.json  refined poses, with pose_refinement
@@ -29,6 +31,7 @@ std::filesystem::path FramesPath(const std::filesystem::path& run);
 std::filesystem::path ColmapPath(const std::filesystem::path& run);
 std::filesystem::path PointsPath(const std::filesystem::path& run);
 std::filesystem::path SparsePath(const std::filesystem::path& run);
+std::filesystem::path GaussiansPath(const std::filesystem::path& run);
 
 // A trained run, for rendering and evaluation.
 struct OpenedRun {
@@ -40,6 +43,9 @@ struct OpenedRun {
 // The photographs are not read and may be missing; comparing with one is then an error.
 // Throws InputError naming what is missing or damaged.
 OpenedRun OpenRun(const std::filesystem::path& run);
+
+// The Gaussians of a run. Throws InputError if it has none.
+std::shared_ptr<const GaussianModel> OpenGaussians(const std::filesystem::path& run);
 
 // The checkpoint of a run. Throws InputError if there is none.
 Checkpoint ReadRunCheckpoint(const std::filesystem::path& run);

@@ -100,11 +100,21 @@ struct TrainingEnded {
   std::optional<std::filesystem::path> picture;  // of what it reached
 };
 
+// Gaussians: the field's surfaces at the poses of photographs, and iterations.
+struct SurfacesRendered {
+  std::size_t done = 0, views = 0;
+};
+struct GaussiansStepped {
+  std::int64_t step = 0;
+  double fraction = 0;  // of the fit
+  double loss = 0;
+};
+
 using PipelineEvent =
     std::variant<Warning, WaitEstimated, FilmRead, PosesFound, PointsFound, ResolutionChosen,
                  InspectionProgress, CaptureInspected, DataPlanned, VerdictReached, EffectsTried,
                  EffectsUndecided, BudgetPlanned, TrainingBegan, TrainerEvent, PosesRefined,
-                 TrainingEnded>;
+                 TrainingEnded, SurfacesRendered, GaussiansStepped>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // A listener that ignores all events.

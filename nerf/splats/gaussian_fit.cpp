@@ -19,14 +19,11 @@ using kernels::kGaussiansInBlock;
 constexpr std::uint64_t kTurnStream = 0x67617573735f5f32ull;
 constexpr std::uint64_t kSplitStream = 0x67617573735f5f33ull;
 constexpr std::uint64_t kBackgroundStream = 0x67617573735f5f34ull;
+// Learning rates are those of a fit of so many iterations, and for others times (this / their
+// number)^power.
+constexpr double kRatedSteps = 2000, kRatePower = 0.7;
 // A Gaussian becomes two of this size, a standard deviation of its own apart.
 constexpr float kSplitScale = 1 / 1.5f, kSplitDistance = 0.7f;
-
-// Rows of parameters that share a learning rate.
-struct RowGroup {
-  int first, count;
-  double rate;
-};
 
 // A number of mean 0 and variance 1, by the sum of twelve even ones.
 float RandomNormal(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
@@ -71,8 +68,8 @@ const GaussianFit::Picture& GaussianFit::NextPicture(double progress) {
   return progress < options_.half_resolution ? half_[photograph] : whole_[photograph];
 }
 
-double GaussianFit::Step(double progress) {
-  const Picture& picture = NextPicture(progress);
+double GaussianFit::Step(const FitProgress& progress) {
+  const Picture& picture = NextPicture(progress.fraction);
   std::array<float, 3> background{};
   if (has_alpha_) {
     for (int c = 0; c < 3; ++c) {
@@ -84,26 +81,44 @@ double GaussianFit::Step(double progress) {
   const double loss =
       loss_.Evaluate(drawn, picture.target, background, options_.structural, gradient_);
   ++step_;
+  const std::vector<RowGroup> groups = RowGroups(progress);
+  correction_ = kernels::BiasCorrection(groups.front().adam, step_);
   renderer_.Backward(
       picture.camera, cloud_.Parameters(), gradient_, false,
       [&](std::int64_t block, std::span<float> gradients, std::span<const float> on_screen) {
-        UpdateBlock(block, gradients, on_screen, progress);
+        UpdateBlock(block, gradients, on_screen, groups);
       });
-  if (step_ % options_.split_every == 0 && progress < options_.split_until) Split();
+  if (step_ % options_.split_every == 0 && progress.fraction < options_.split_until) Split();
   return loss;
 }
 
+std::vector<GaussianFit::RowGroup> GaussianFit::RowGroups(const FitProgress& progress) const {
+  // Long fits end better with small steps.
+  const double of_length = std::pow(kRatedSteps / progress.steps, kRatePower);
+  const double decay = of_length * std::pow(options_.last_rate, progress.fraction);
+  const auto group = [](int first, int count, double rate) {
+    kernels::AdamCoefficients adam;
+    adam.beta2 = 0.999f;
+    adam.learning_rate = static_cast<float>(rate);
+    return RowGroup{first, count, adam};
+  };
+  std::vector<RowGroup> groups = {
+      group(kernels::kMeanRow, 3,
+            options_.mean_rate * of_length * std::pow(options_.last_mean_rate, progress.fraction)),
+      group(kernels::kLogScaleRow, 3, options_.scale_rate * decay),
+      group(kernels::kRotationRow, 4, options_.rotation_rate * decay),
+      group(kernels::kOpacityRow, 1, options_.opacity_rate * decay),
+      group(kernels::kColorRow, 3, options_.color_rate * decay)};
+  if (cloud_.order > 0) {
+    groups.push_back(group(kernels::kColorRow + 3,
+                           kernels::GaussianRows(cloud_.order) - kernels::kColorRow - 3,
+                           options_.harmonics_rate * decay));
+  }
+  return groups;
+}
+
 void GaussianFit::UpdateBlock(std::int64_t block, std::span<float> gradients,
-                              std::span<const float> on_screen, double progress) {
-  const double decay = std::pow(options_.last_rate, progress);
-  const RowGroup groups[] = {
-      {kernels::kMeanRow, 3, options_.mean_rate * std::pow(options_.last_mean_rate, progress)},
-      {kernels::kLogScaleRow, 3, options_.scale_rate * decay},
-      {kernels::kRotationRow, 4, options_.rotation_rate * decay},
-      {kernels::kOpacityRow, 1, options_.opacity_rate * decay},
-      {kernels::kColorRow, 3, options_.color_rate * decay},
-      {kernels::kColorRow + 3, kernels::GaussianRows(cloud_.order) - kernels::kColorRow - 3,
-       options_.harmonics_rate * decay}};
+                              std::span<const float> on_screen, std::span<const RowGroup> groups) {
   const std::size_t size = gradients.size();
   const std::size_t begin = static_cast<std::size_t>(block) * size;
   float* const parameters = cloud_.parameters.data_ptr<float>() + begin;
@@ -115,16 +130,11 @@ void GaussianFit::UpdateBlock(std::int64_t block, std::span<float> gradients,
     const float o = 1 / (1 + std::exp(-parameters[at]));
     gradients[at] += static_cast<float>(options_.opacity_penalty) * o * (1 - o);
   }
-  kernels::AdamCoefficients adam;
-  adam.beta2 = 0.999f;
-  const kernels::AdamBiasCorrection correction = kernels::BiasCorrection(adam, step_);
   for (const RowGroup& group : groups) {
-    if (group.count <= 0) continue;
-    adam.learning_rate = static_cast<float>(group.rate);
     const std::size_t at = static_cast<std::size_t>(group.first) * kGaussiansInBlock;
     const std::size_t values = static_cast<std::size_t>(group.count) * kGaussiansInBlock;
-    kernels::AdamStep(adam, correction, {parameters + at, values}, gradients.subspan(at, values),
-                      {first + at, values}, {second + at, values});
+    kernels::AdamStep(group.adam, correction_, {parameters + at, values},
+                      gradients.subspan(at, values), {first + at, values}, {second + at, values});
   }
 }
 

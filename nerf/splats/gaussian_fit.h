@@ -3,12 +3,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "nerf/config/splat_options.h"
+#include "nerf/kernels/adam.h"
 #include "nerf/scene/view.h"
 #include "nerf/splats/gaussian_cloud.h"
 #include "nerf/splats/picture_loss.h"
-#include "nerf/splats/splat_options.h"
 
 namespace nerf {
+
+// Where a fit stands.
+struct FitProgress {
+  double fraction = 0;  // 0 to 1: by iterations or by time
+  double steps = 0;     // iterations of the whole fit; of a fit by time, about
+};
 
 // Fits Gaussians to photographs: Adam on the loss of one whole photograph after another, first at
 // half the resolution; Gaussians that became invisible are put where the picture asks for more:
@@ -22,10 +29,8 @@ class GaussianFit {
   GaussianFit(const std::vector<View>& views, bool has_alpha, GaussianCloud initial,
               const SplatOptions& options, double near, std::uint64_t seed);
 
-  // One iteration.
-  //   progress  of the whole fit, 0 to 1: by steps or by time
-  //   returns   the loss
-  double Step(double progress);
+  // One iteration. Returns the loss.
+  double Step(const FitProgress& progress);
 
   const GaussianCloud& Cloud() const { return cloud_; }
   std::int64_t Steps() const { return step_; }
@@ -37,8 +42,14 @@ class GaussianFit {
     kernels::GaussianCamera camera;
   };
   const Picture& NextPicture(double progress);
+  // Rows of parameters that share a learning rate.
+  struct RowGroup {
+    int first, count;
+    kernels::AdamCoefficients adam;
+  };
+  std::vector<RowGroup> RowGroups(const FitProgress& progress) const;
   void UpdateBlock(std::int64_t block, std::span<float> gradients, std::span<const float> on_screen,
-                   double progress);
+                   std::span<const RowGroup> groups);
   void Split();
   void SplitInto(std::int64_t from, std::int64_t to);
 
@@ -49,6 +60,7 @@ class GaussianFit {
   std::vector<std::uint32_t> turn_;  // the order of the photographs
   GaussianCloud cloud_;
   torch::Tensor first_moment_, second_moment_;  // of Adam, as the parameters
+  kernels::AdamBiasCorrection correction_;      // of this step
   std::vector<float> need_;                     // gradient on the screen since the last split
   GaussianRenderer renderer_;
   PictureLoss loss_;

@@ -48,7 +48,8 @@ std::vector<double> Spacing(const std::vector<ColoredPoint>& points) {
                   const std::size_t found = tree.knnSearch(
                       points[i].x_in_normalized.data(), index.size(), index.data(), squared.data());
                   if (found < 2) continue;
-                  const double sum = std::accumulate(squared.begin(), squared.begin() + static_cast<std::ptrdiff_t>(found), 0.0);
+                  const double sum = std::accumulate(
+                      squared.begin(), squared.begin() + static_cast<std::ptrdiff_t>(found), 0.0);
                   spacing[i] = std::sqrt(sum / static_cast<double>(found - 1));
                 }
               });

@@ -1,12 +1,13 @@
 // Fits Gaussians to a capture for some seconds, and prints the PSNR on validation and held-out
 // photographs:
-//   splat_fit INPUT DOWNSCALE SECONDS [splat option=value ...]
+//   splat_fit INPUT DOWNSCALE SECONDS|ITERATIONSi [splat option=value ...]
 #include <fmt/core.h>
 
 #include <cstdlib>
 #include <string>
 
 #include "nerf/base/peak_memory.h"
+#include "nerf/base/quantile.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/pipeline/prepared_scene.h"
 #include "nerf/splats/gaussian_camera.h"
@@ -34,9 +35,12 @@ double Psnr(const std::vector<View>& views, bool has_alpha, const GaussianCloud&
         const float T = drawn.Plane(3)[y * drawn.stride + x];
         const float opacity = target.Row(TargetPicture::kOpacity, y)[x];
         for (int c = 0; c < 3; ++c) {
-          const auto rounded = [](float v) { return std::round(std::clamp(v, 0.0f, 1.0f) * 255) / 255; };
+          const auto rounded = [](float v) {
+            return std::round(std::clamp(v, 0.0f, 1.0f) * 255) / 255;
+          };
           const float shown = target.Row(c, y)[x] * opacity + (1 - opacity) * background;
-          const float d = rounded(drawn.Plane(c)[y * drawn.stride + x] + T * background) - rounded(shown);
+          const float d =
+              rounded(drawn.Plane(c)[y * drawn.stride + x] + T * background) - rounded(shown);
           error += d * d;
           ++count;
         }
@@ -63,7 +67,9 @@ void SetOption(SplatOptions& options, const std::string& assignment) {
 void Run(int argc, char** argv) {
   DataOptions data;
   data.downscale = std::stoi(argv[2]);
-  const double seconds = std::stod(argv[3]);
+  // 30: seconds; 2000i: iterations
+  const double length = std::stod(argv[3]);
+  const bool by_steps = std::string(argv[3]).back() == 'i';
   SplatOptions options;
   for (int i = 4; i < argc; ++i) SetOption(options, argv[i]);
   const PipelineListener listener = [](const auto&) {};
@@ -71,8 +77,10 @@ void Run(int argc, char** argv) {
   const Dataset train = LoadDataset(scene.posed, data, {}, scene.normalized_from_world);
   PosedImages held_out = scene.posed;
   for (PosedImage& image : held_out.images) {
-    if (image.split == Split::kTest) image.split = Split::kValidation;
-    else if (image.split == Split::kValidation) image.split = Split::kTest;
+    if (image.split == Split::kTest)
+      image.split = Split::kValidation;
+    else if (image.split == Split::kValidation)
+      image.split = Split::kTest;
   }
   const Dataset test = LoadDataset(held_out, data, {}, scene.normalized_from_world);
   const Stopwatch watch;
@@ -82,30 +90,48 @@ void Run(int argc, char** argv) {
                       Eigen::Vector3f(point.rgb[0], point.rgb[1], point.rgb[2]) / 255});
   }
   if (points.empty()) {
-    for (int i = 0; i < options.count / 2; ++i) points.push_back({Eigen::Vector3d::Random() * 0.7, {0.5f, 0.5f, 0.5f}});
+    for (int i = 0; i < options.count / 2; ++i)
+      points.push_back({Eigen::Vector3d::Random() * 0.7, {0.5f, 0.5f, 0.5f}});
   }
   GaussianFit fit(train.train, train.has_alpha,
                   GaussiansAtPoints(points, options.count, options.harmonics_order, 1), options,
                   kNear, 1);
-  fmt::print("{} points, set up in {:.2f} s, {} train views\n", points.size(), watch.Seconds(), train.train.size());
-  double next = seconds / 4;
+  fmt::print("{} points, set up in {:.2f} s, {} train views\n", points.size(), watch.Seconds(),
+             train.train.size());
+  double next = length / 4;
   const Stopwatch training;
   double pause = 0;
   while (true) {
     const double spent = training.Seconds() - pause;
-    if (spent >= next || spent >= seconds) {
+    const double reached = by_steps ? static_cast<double>(fit.Steps()) : spent;
+    if (reached >= next) {
       const Stopwatch evaluating;
-      fmt::print("{:6.1f} s {:6} iterations, {:.1f} ms each: validation {:.2f}, held out {:.2f} dB\n",
-                 spent, fit.Steps(), 1e3 * spent / std::max<std::int64_t>(1, fit.Steps()), Psnr(train.validation, train.has_alpha, fit.Cloud()),
-                 Psnr(test.validation, train.has_alpha, fit.Cloud()));
+      fmt::print(
+          "{:6.1f} s {:6} iterations, {:.1f} ms each: validation {:.2f}, held out {:.2f} dB\n",
+          spent, fit.Steps(), 1e3 * spent / std::max<std::int64_t>(1, fit.Steps()),
+          Psnr(train.validation, train.has_alpha, fit.Cloud()),
+          Psnr(test.validation, train.has_alpha, fit.Cloud()));
       std::fflush(stdout);
       pause += evaluating.Seconds();
-      next += seconds / 4;
-      if (spent >= seconds) break;
+      next += length / 4;
+      if (reached >= length) break;
     }
-    fit.Step(std::min(1.0, spent / seconds));
+    fit.Step({std::min(1.0, reached / length), by_steps ? length : 2000});
   }
-  fmt::print("training views {:.2f} dB, peak {:.0f} MB\n", Psnr(train.train, train.has_alpha, fit.Cloud()), PeakMegabytes());
+  GaussianRenderer renderer;
+  std::vector<double> frames;
+  for (int round = 0; round < 3; ++round) {
+    for (const View& view : train.train) {
+      const kernels::GaussianCamera camera =
+          MakeGaussianCamera(view.camera, view.normalized_from_camera, kNear);
+      const Stopwatch frame;
+      renderer.Draw(camera, fit.Cloud().Parameters());
+      frames.push_back(1e3 * frame.Seconds());
+    }
+  }
+  fmt::print("a frame {:.2f} ms in the median\n", Median(frames));
+  fmt::print("training views {:.2f} dB, peak {:.0f} MB\n",
+             Psnr(train.train, train.has_alpha, fit.Cloud()), PeakMegabytes());
 }
 
 }  // namespace

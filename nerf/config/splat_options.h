@@ -7,6 +7,7 @@ namespace nerf {
 // How Gaussians are fitted to photographs (nerf/splats/gaussian_fit.h).
 struct SplatOptions {
   int count = 50000;
+  int steps = 4000;
   int harmonics_order = 3;
   double structural = 0.2;
   double half_resolution = 0.3;
@@ -27,6 +28,7 @@ struct SplatOptions {
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
     option("count", o.count, "", Between(16, 1 << 24), "Gaussians");
+    option("steps", o.steps, "iterations", Between(1, 1 << 24), "without a time budget");
     option("harmonics_order", o.harmonics_order, "", Between(0, 3),
            "of the spherical harmonics by which colour depends on direction");
     option("structural", o.structural, "", Between(0, 1), "share of 1 - SSIM in the loss");

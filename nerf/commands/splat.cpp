@@ -1,0 +1,74 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "nerf/base/interrupt.h"
+#include "nerf/base/progress.h"
+#include "nerf/commands/commands.h"
+#include "nerf/commands/threads.h"
+#include "nerf/commands/training_display.h"
+#include "nerf/model/run_folder.h"
+#include "nerf/pipeline/gaussian_session.h"
+
+namespace nerf {
+namespace {
+
+struct SplatArguments {
+  GaussianRequest request;
+  std::string run;
+  int threads = 0;
+};
+
+void RunSplat(SplatArguments& arguments) {
+  const Stopwatch watch;
+  UseThreads(arguments.threads);
+  arguments.request.run = arguments.run;
+  TrainingDisplay display;
+  const GaussianSummary summary =
+      MakeGaussians(arguments.request, watch, StopOnInterrupt(),
+                    [&](const PipelineEvent& event) { display(event); });
+  display.Finish();
+  fmt::print("{} {} Gaussians in {} iterations, {:.1f} s\n",
+             summary.finished ? "fitted" : "stopped, kept", summary.gaussians, summary.steps,
+             summary.seconds);
+  if (summary.psnr > 0) {
+    fmt::print("validation {:.2f} dB; the field has {:.2f} dB\n", summary.psnr, summary.field_psnr);
+  }
+  fmt::print("{}\nnext: nerf render {} --with splats\n", GaussiansPath(arguments.run).string(),
+             arguments.run);
+}
+
+}  // namespace
+
+void AddSplatCommand(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "splat", "Makes Gaussians of a trained run, which are drawn in milliseconds");
+  const auto arguments = std::make_shared<SplatArguments>();
+  command->add_option("run", arguments->run, "run folder")->required();
+  command
+      ->add_option("--time-budget", arguments->request.time_budget,
+                   "end after this time: 90, 30s, 2m, 1h [splats.steps iterations]")
+      ->transform(
+          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
+  command
+      ->add_option("--set", arguments->request.assignments,
+                   "override a value: splats.count=100000; repeatable")
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
+  command->footer(
+      "They begin at the surfaces that the field renders, and are fitted to the photographs of "
+      "the\n"
+      "run, which must still be there. The field stays as it is.\n"
+      "Examples:\n"
+      "  nerf splat runs/fox\n"
+      "  nerf splat runs/fox --time-budget 2m --set splats.count=100000\n"
+      "  nerf render runs/fox --with splats --path orbit");
+  command->callback([arguments] { RunSplat(*arguments); });
+}
+
+}  // namespace nerf

@@ -1,0 +1,100 @@
+#include "nerf/model/gaussian_model.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "nerf/base/input_error.h"
+#include "nerf/base/stopwatch.h"
+#include "nerf/scene/dataset.h"
+#include "nerf/splats/gaussian_camera.h"
+#include "nerf/splats/gaussian_renderer.h"
+
+namespace nerf {
+namespace {
+
+constexpr double kNear = 0.02;           // normalized units
+constexpr float kLeastOpacity = 1e-3f;   // below it depth is undefined
+constexpr char kTensor[] = "gaussians";  // in the file
+
+}  // namespace
+
+double NearOfGaussians(const Config& config) { return std::max(kNear, config.march.near_distance); }
+
+GaussianModel::GaussianModel(Config config, SceneFacts scene, GaussianCloud cloud,
+                             std::int64_t step)
+    : config_(std::move(config)), scene_(std::move(scene)), cloud_(std::move(cloud)), step_(step) {}
+
+RenderedView GaussianModel::Render(const ViewRequest& view) const {
+  if (view.quality != 1) {
+    throw InputError("quality {}: Gaussians are always drawn exactly; use 1, or --with field",
+                     view.quality);
+  }
+  const Eigen::Isometry3d pose =
+      scene_.normalized_from_world.NormalizedFromCamera(view.world_from_camera);
+  const Eigen::Vector3f background = DisplayBackground(scene_.has_alpha);
+  GaussianRenderer renderer;
+  const GaussianPicture& picture = renderer.Draw(
+      MakeGaussianCamera(view.camera, pose, NearOfGaussians(config_)), cloud_.Parameters());
+  RenderedView rendered;
+  rendered.rgb = Image(picture.width, picture.height, 3, scene_.encoding);
+  rendered.opacity = Image(picture.width, picture.height, 1, ColorEncoding::kLinear);
+  rendered.depth = Image(picture.width, picture.height, 1, ColorEncoding::kLinear);
+  for (int y = 0; y < picture.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * picture.stride;
+    const float* const T = picture.Plane(GaussianPicture::kTransmittance) + row;
+    const float* const distance = picture.Plane(GaussianPicture::kDistance) + row;
+    for (int x = 0; x < picture.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        rendered.rgb.At(x, y)[c] = picture.Plane(c)[row + x] + T[x] * background[c];
+      }
+      const float opacity = 1 - T[x];
+      *rendered.opacity.At(x, y) = opacity;
+      *rendered.depth.At(x, y) = opacity > kLeastOpacity ? distance[x] / opacity : 0;
+    }
+  }
+  rendered.samples = renderer.Visible();
+  if (view.progress) view.progress(std::int64_t{picture.width} * picture.height);
+  return rendered;
+}
+
+void WriteGaussians(const GaussianModel& model, double seconds, const std::filesystem::path& file) {
+  Checkpoint checkpoint;
+  checkpoint.meta = {{"config", JsonFromConfig(model.GetConfig())},
+                     {"scene", JsonFromScene(model.Scene())},
+                     {"step", model.Step()},
+                     {"gaussians", model.Cloud().count},
+                     {"harmonics_order", model.Cloud().order},
+                     {"training_seconds", seconds}};
+  checkpoint.tensors[kTensor] = model.Cloud().parameters;
+  WriteCheckpoint(file, checkpoint);
+}
+
+GaussianModel ReadGaussians(const std::filesystem::path& file) {
+  const Checkpoint checkpoint = ReadCheckpoint(file);
+  try {
+    const nlohmann::json& meta = checkpoint.meta;
+    const auto order = meta.at("harmonics_order").get<int>();
+    const auto count = meta.at("gaussians").get<std::int64_t>();
+    const auto stored = checkpoint.tensors.find(kTensor);
+    // Before anything is allocated.
+    if (order < 0 || order > kernels::kMostHarmonicsOrder || count < 1 ||
+        stored == checkpoint.tensors.end() ||
+        stored->second.numel() / kernels::GaussianRows(order) < count ||
+        stored->second.numel() / kernels::GaussianRows(order) >=
+            count + kernels::kGaussiansInBlock) {
+      throw InputError(
+          "{}: the number of Gaussians does not match their parameters; make them "
+          "again with nerf splat",
+          file.string());
+    }
+    GaussianCloud cloud(count, order);
+    CopyTensor(checkpoint.tensors, kTensor, cloud.parameters);
+    return {ConfigFromJson(meta.at("config"), file.string()), SceneFromJson(meta.at("scene")),
+            std::move(cloud), meta.at("step").get<std::int64_t>()};
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError("{}: is no file of Gaussians ({}); make them again with nerf splat",
+                     file.string(), error.what());
+  }
+}
+
+}  // namespace nerf

@@ -1,0 +1,117 @@
+#include "nerf/pipeline/surface_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "nerf/base/parallel.h"
+#include "nerf/base/random.h"
+#include "nerf/scene/camera.h"
+
+namespace nerf {
+namespace {
+
+constexpr double kPixelsForPoint = 8;
+constexpr double kDepthQuality = 0.5;  // of rendering
+constexpr float kOpaque = 0.5f;
+constexpr double kAgreement = 0.02;                         // of the distance
+constexpr int kViewsThatAgree = 2;                          // beside that of the point
+constexpr double kSmallestVoxel = 1e-4, kLargestVoxel = 1;  // normalized units
+constexpr int kBisections = 16;
+
+struct DepthView {
+  Camera camera;
+  Eigen::Isometry3d normalized_from_camera;
+  RenderedView rendered;
+
+  // The distance of what is seen at a pixel; 0 where it is empty.
+  double DistanceAt(int x, int y) const {
+    return *rendered.opacity.At(x, y) > kOpaque ? *rendered.depth.At(x, y) : 0.0f;
+  }
+  bool Agrees(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d p = normalized_from_camera.inverse() * point;
+    const auto pixel = PixelFromPoint(camera, p);
+    if (!pixel) return false;
+    const double x = std::floor(pixel->x()), y = std::floor(pixel->y());
+    if (!(x >= 0 && y >= 0 && x < camera.width && y < camera.height)) return false;
+    const double seen = DistanceAt(static_cast<int>(x), static_cast<int>(y));
+    return seen > 0 && std::abs(seen - p.norm()) < kAgreement * p.norm();
+  }
+};
+
+std::vector<ColoredPoint> PointsOf(const std::vector<DepthView>& views, std::size_t of) {
+  const DepthView& view = views[of];
+  std::vector<ColoredPoint> points;
+  for (int y = 0; y < view.camera.height; ++y) {
+    for (int x = 0; x < view.camera.width; ++x) {
+      const double distance = view.DistanceAt(x, y);
+      if (distance == 0) continue;
+      const auto direction = DirectionFromPixel(view.camera, {x + 0.5, y + 0.5});
+      if (!direction) continue;
+      const Eigen::Vector3d point = view.normalized_from_camera * (distance * *direction);
+      int agreeing = 0;
+      for (std::size_t other = 0; other < views.size() && agreeing < kViewsThatAgree; ++other) {
+        if (other != of && views[other].Agrees(point)) ++agreeing;
+      }
+      if (agreeing < kViewsThatAgree) continue;
+      const float* const rgb = view.rendered.rgb.At(x, y);
+      points.push_back({point, Eigen::Vector3f(rgb[0], rgb[1], rgb[2])});
+    }
+  }
+  return points;
+}
+
+std::uint64_t VoxelOf(const Eigen::Vector3d& point, double size) {
+  std::uint64_t key = 0;
+  for (int k = 0; k < 3; ++k) {
+    key = Mix64(key ^
+                static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(point[k] / size))));
+  }
+  return key;
+}
+
+std::vector<ColoredPoint> OneInEachVoxel(const std::vector<ColoredPoint>& points, double size) {
+  std::unordered_set<std::uint64_t> taken;
+  std::vector<ColoredPoint> kept;
+  for (const ColoredPoint& point : points) {
+    if (taken.insert(VoxelOf(point.x_in_normalized, size)).second) kept.push_back(point);
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<ColoredPoint> SurfacePoints(const SceneModel& model, const std::vector<View>& views,
+                                        std::int64_t wanted,
+                                        const std::function<void(std::size_t)>& progress) {
+  double pixels = 0;
+  for (const View& view : views) pixels += static_cast<double>(PixelCount(view.camera));
+  const double reduction = std::sqrt(pixels / (kPixelsForPoint * static_cast<double>(wanted)));
+  const SceneNormalization& frame = model.Scene().normalized_from_world;
+  std::vector<DepthView> rendered;
+  for (const View& view : views) {
+    const int most = std::max(1, std::min(view.camera.width, view.camera.height) / 16);
+    const int factor = std::clamp(static_cast<int>(std::lround(reduction)), 1, most);
+    const Camera camera = Downscaled(view.camera, factor);
+    rendered.push_back({camera, view.normalized_from_camera,
+                        model.Render({camera, frame.WorldFromCamera(view.normalized_from_camera),
+                                      kDepthQuality})});
+    progress(rendered.size());
+  }
+  std::vector<std::vector<ColoredPoint>> of_view(rendered.size());
+  ParallelForEach(static_cast<std::int64_t>(rendered.size()), [&](std::int64_t i) {
+    of_view[i] = PointsOf(rendered, static_cast<std::size_t>(i));
+  });
+  std::vector<ColoredPoint> points;
+  for (const auto& own : of_view) points.insert(points.end(), own.begin(), own.end());
+  // The smallest voxels that leave no more than wanted.
+  double low = std::log(kSmallestVoxel), high = std::log(kLargestVoxel);
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = (low + high) / 2;
+    const auto left = static_cast<std::int64_t>(OneInEachVoxel(points, std::exp(middle)).size());
+    (left > wanted ? low : high) = middle;
+  }
+  return OneInEachVoxel(points, std::exp(high));
+}
+
+}  // namespace nerf
