@@ -1,6 +1,5 @@
 #include "nerf/model/gaussian_model.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "nerf/base/input_error.h"
@@ -12,17 +11,18 @@
 namespace nerf {
 namespace {
 
-constexpr double kNear = 0.02;           // normalized units
 constexpr float kLeastOpacity = 1e-3f;   // below it depth is undefined
 constexpr char kTensor[] = "gaussians";  // in the file
 
 }  // namespace
 
-double NearOfGaussians(const Config& config) { return std::max(kNear, config.march.near_distance); }
-
-GaussianModel::GaussianModel(Config config, SceneFacts scene, GaussianCloud cloud,
+GaussianModel::GaussianModel(Config config, SceneFacts scene, GaussianCloud cloud, double near,
                              std::int64_t step)
-    : config_(std::move(config)), scene_(std::move(scene)), cloud_(std::move(cloud)), step_(step) {}
+    : config_(std::move(config)),
+      scene_(std::move(scene)),
+      cloud_(std::move(cloud)),
+      near_(near),
+      step_(step) {}
 
 RenderedView GaussianModel::Render(const ViewRequest& view) const {
   if (view.quality != 1) {
@@ -33,8 +33,8 @@ RenderedView GaussianModel::Render(const ViewRequest& view) const {
       scene_.normalized_from_world.NormalizedFromCamera(view.world_from_camera);
   const Eigen::Vector3f background = DisplayBackground(scene_.has_alpha);
   GaussianRenderer renderer;
-  const GaussianPicture& picture = renderer.Draw(
-      MakeGaussianCamera(view.camera, pose, NearOfGaussians(config_)), cloud_.Parameters());
+  const GaussianPicture& picture =
+      renderer.Draw(MakeGaussianCamera(view.camera, pose, near_), cloud_.Parameters());
   RenderedView rendered;
   rendered.rgb = Image(picture.width, picture.height, 3, scene_.encoding);
   rendered.opacity = Image(picture.width, picture.height, 1, ColorEncoding::kLinear);
@@ -64,6 +64,7 @@ void WriteGaussians(const GaussianModel& model, double seconds, const std::files
                      {"step", model.Step()},
                      {"gaussians", model.Cloud().count},
                      {"harmonics_order", model.Cloud().order},
+                     {"near", model.Near()},
                      {"training_seconds", seconds}};
   checkpoint.tensors[kTensor] = model.Cloud().parameters;
   WriteCheckpoint(file, checkpoint);
@@ -90,7 +91,7 @@ GaussianModel ReadGaussians(const std::filesystem::path& file) {
     GaussianCloud cloud(count, order);
     CopyTensor(checkpoint.tensors, kTensor, cloud.parameters);
     return {ConfigFromJson(meta.at("config"), file.string()), SceneFromJson(meta.at("scene")),
-            std::move(cloud), meta.at("step").get<std::int64_t>()};
+            std::move(cloud), meta.at("near").get<double>(), meta.at("step").get<std::int64_t>()};
   } catch (const nlohmann::json::exception& error) {
     throw InputError("{}: is no file of Gaussians ({}); make them again with nerf splat",
                      file.string(), error.what());

@@ -11,7 +11,9 @@ namespace nerf {
 // Gaussians of a run, with what is needed to render them.
 class GaussianModel : public SceneModel {
  public:
-  GaussianModel(Config config, SceneFacts scene, GaussianCloud cloud, std::int64_t step);
+  //   near  means nearer to a camera are not drawn, normalized units
+  GaussianModel(Config config, SceneFacts scene, GaussianCloud cloud, double near,
+                std::int64_t step);
 
   // Exact, whatever the quality; throws InputError for another one than 1.
   RenderedView Render(const ViewRequest& view) const override;
@@ -19,16 +21,15 @@ class GaussianModel : public SceneModel {
   const SceneFacts& Scene() const override { return scene_; }
   std::int64_t Step() const override { return step_; }
   const GaussianCloud& Cloud() const { return cloud_; }
+  double Near() const { return near_; }
 
  private:
   Config config_;
   SceneFacts scene_;
   GaussianCloud cloud_;
+  double near_;
   std::int64_t step_;
 };
-
-// Where Gaussians that are nearer to a camera are not drawn, normalized units.
-double NearOfGaussians(const Config& config);
 
 // Writes a model to a file, and reads it back. Throws InputError naming a file that is missing,
 // damaged, or none of Gaussians.

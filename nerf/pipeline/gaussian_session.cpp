@@ -14,6 +14,10 @@
 namespace nerf {
 namespace {
 
+// Gaussians that are nearer to a camera than this share of what it sees are not drawn: they would
+// hang in front of it, to explain one photograph.
+constexpr double kNearShare = 0.5;
+
 // The configuration of the run with assignments to its splats.
 Config ConfigOf(const OpenedRun& run, const std::vector<std::string>& assignments) {
   nlohmann::json json = JsonFromConfig(run.model->GetConfig());
@@ -88,17 +92,18 @@ GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& w
   Dataset data =
       LoadPhotographs(run.posed, config, scene.normalized_from_world, request.run, listener);
   RemoveExposures(run.model->GetModel(), data.train);
-  const std::vector<ColoredPoint> points =
-      SurfacePoints(*run.model, data.train, options.count, [&](std::size_t done) {
+  const SurfacePoints surfaces =
+      FindSurfacePoints(*run.model, data.train, options.count, [&](std::size_t done) {
         listener(SurfacesRendered{done, data.train.size()});
       });
-  if (points.empty()) {
+  if (surfaces.points.empty()) {
     throw InputError("{}: its views agree on no surface; train it longer", request.run.string());
   }
+  const double near = std::max(config.march.near_distance, kNearShare * surfaces.nearest);
   GaussianFit fit(
       data.train, scene.has_alpha,
-      GaussiansAtPoints(points, options.count, options.harmonics_order, config.train.seed), options,
-      NearOfGaussians(config), config.train.seed);
+      GaussiansAtPoints(surfaces.points, options.count, options.harmonics_order, config.train.seed),
+      options, near, config.train.seed);
   const double seconds =
       request.time_budget == 0 ? 0 : std::max(1.0, request.time_budget - watch.Seconds());
   const FitClock clock(options, seconds);
@@ -109,7 +114,7 @@ GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& w
     progress = clock.At(fit.Steps());
     listener(GaussiansStepped{fit.Steps(), progress.fraction, loss});
   }
-  const GaussianModel model(config, scene, fit.Cloud(), fit.Steps());
+  const GaussianModel model(config, scene, fit.Cloud(), near, fit.Steps());
   GaussianSummary summary;
   summary.finished = progress.fraction >= 1;
   summary.steps = fit.Steps();

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 
 #include "nerf/base/parallel.h"
+#include "nerf/base/quantile.h"
 #include "nerf/base/random.h"
 #include "nerf/scene/camera.h"
 
@@ -15,9 +17,11 @@ constexpr double kPixelsForPoint = 8;
 constexpr double kDepthQuality = 0.5;  // of rendering
 constexpr float kOpaque = 0.5f;
 constexpr double kAgreement = 0.02;                         // of the distance
+constexpr double kFar = 4;                                  // normalized units
 constexpr int kViewsThatAgree = 2;                          // beside that of the point
 constexpr double kSmallestVoxel = 1e-4, kLargestVoxel = 1;  // normalized units
 constexpr int kBisections = 16;
+constexpr double kNearest = 0.02;  // quantile of the distances in a view
 
 struct DepthView {
   Camera camera;
@@ -35,7 +39,9 @@ struct DepthView {
     const double x = std::floor(pixel->x()), y = std::floor(pixel->y());
     if (!(x >= 0 && y >= 0 && x < camera.width && y < camera.height)) return false;
     const double seen = DistanceAt(static_cast<int>(x), static_cast<int>(y));
-    return seen > 0 && std::abs(seen - p.norm()) < kAgreement * p.norm();
+    // Far away a view cannot tell distances, since nothing moves before it.
+    const double distance = p.norm(), tolerance = kAgreement * (1 + distance / kFar);
+    return seen > 0 && std::abs(seen - distance) < tolerance * distance;
   }
 };
 
@@ -61,7 +67,10 @@ std::vector<ColoredPoint> PointsOf(const std::vector<DepthView>& views, std::siz
   return points;
 }
 
-std::uint64_t VoxelOf(const Eigen::Vector3d& point, double size) {
+// In contracted space: the farther away, the larger.
+std::uint64_t VoxelOf(const Eigen::Vector3d& x, double size) {
+  const double norm = x.norm();
+  const Eigen::Vector3d point = norm > 1 ? Eigen::Vector3d((2 - 1 / norm) / norm * x) : x;
   std::uint64_t key = 0;
   for (int k = 0; k < 3; ++k) {
     key = Mix64(key ^
@@ -81,9 +90,9 @@ std::vector<ColoredPoint> OneInEachVoxel(const std::vector<ColoredPoint>& points
 
 }  // namespace
 
-std::vector<ColoredPoint> SurfacePoints(const SceneModel& model, const std::vector<View>& views,
-                                        std::int64_t wanted,
-                                        const std::function<void(std::size_t)>& progress) {
+SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<View>& views,
+                                std::int64_t wanted,
+                                const std::function<void(std::size_t)>& progress) {
   double pixels = 0;
   for (const View& view : views) pixels += static_cast<double>(PixelCount(view.camera));
   const double reduction = std::sqrt(pixels / (kPixelsForPoint * static_cast<double>(wanted)));
@@ -104,6 +113,16 @@ std::vector<ColoredPoint> SurfacePoints(const SceneModel& model, const std::vect
   });
   std::vector<ColoredPoint> points;
   for (const auto& own : of_view) points.insert(points.end(), own.begin(), own.end());
+  SurfacePoints found;
+  found.nearest = std::numeric_limits<double>::infinity();
+  for (const DepthView& view : rendered) {
+    std::vector<float> distances;
+    for (const float distance : view.rendered.depth.pixels) {
+      if (distance > 0) distances.push_back(distance);
+    }
+    if (distances.empty()) continue;
+    found.nearest = std::min<double>(found.nearest, Quantile(distances, kNearest));
+  }
   // The smallest voxels that leave no more than wanted.
   double low = std::log(kSmallestVoxel), high = std::log(kLargestVoxel);
   for (int i = 0; i < kBisections; ++i) {
@@ -111,7 +130,8 @@ std::vector<ColoredPoint> SurfacePoints(const SceneModel& model, const std::vect
     const auto left = static_cast<std::int64_t>(OneInEachVoxel(points, std::exp(middle)).size());
     (left > wanted ? low : high) = middle;
   }
-  return OneInEachVoxel(points, std::exp(high));
+  found.points = OneInEachVoxel(points, std::exp(high));
+  return found;
 }
 
 }  // namespace nerf

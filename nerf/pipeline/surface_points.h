@@ -10,13 +10,18 @@
 
 namespace nerf {
 
+struct SurfacePoints {
+  std::vector<ColoredPoint> points;
+  double nearest = 0;  // of what views see, normalized units: the least of their 2 % quantiles
+};
+
 // Points of the surfaces of a model: the depth that it renders at the poses of photographs, where
-// at least two other views see the same surface; then one point in each voxel, of a size that
-// leaves about as many as wanted.
+// at least two other views see the same surface; then one point in each voxel of contracted space,
+// of a size that leaves about as many as wanted.
 //   views     poses and cameras; rendered at a resolution that gives several pixels for each point
 //   progress  called with the number of views done
-std::vector<ColoredPoint> SurfacePoints(const SceneModel& model, const std::vector<View>& views,
-                                        std::int64_t wanted,
-                                        const std::function<void(std::size_t)>& progress);
+SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<View>& views,
+                                std::int64_t wanted,
+                                const std::function<void(std::size_t)>& progress);
 
 }  // namespace nerf
