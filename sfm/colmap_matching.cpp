@@ -18,6 +18,7 @@ constexpr int kNeighbours = 2;
 
 // Instead of all pairs where these would be too many: time and memory grow with the photographs.
 constexpr int kMostForAllPairs = 300, kManyPairsEach = 60;
+constexpr std::size_t kMostGuided = 40000;
 
 }  // namespace
 
@@ -53,14 +54,21 @@ void ColmapSteps::MatchInParts(const std::string& step, const std::vector<ImageP
              [&](std::size_t done) { line.Update(static_cast<std::int64_t>(done)); });
 }
 
-void ColmapSteps::MatchAllAndMap() {
+std::vector<ImagePair> ColmapSteps::RemainingPairs(const ColmapDatabase& database,
+                                                   const std::set<std::string>& registered) const {
+  const int count = static_cast<int>(database.Names().size());
+  if (count <= kMostForAllPairs) return AllPairs(count);
+  std::vector<int> inside, outside;
+  for (int i = 0; i < count; ++i) {
+    (registered.contains(database.Names()[i]) ? inside : outside).push_back(i);
+  }
+  return Joined(SimilarPairs(database, kManyPairsEach), PairsBetween(outside, inside, kMostGuided));
+}
+
+void ColmapSteps::MatchAllAndMap(const std::set<std::string>& registered) {
   Step("matches_all", nlohmann::json::object(), Database(), [&](StepLedger::State) {
     ColmapDatabase database(Database());
-    const int count = static_cast<int>(database.Names().size());
-    MatchInParts(
-        "matches_all",
-        count <= kMostForAllPairs ? AllPairs(count) : SimilarPairs(database, kManyPairsEach),
-        database);
+    MatchInParts("matches_all", RemainingPairs(database, registered), database);
   });
   MapAgain("mapper_all", {});
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,9 +41,10 @@ class ColmapSteps {
   // Writes the models to sparse/0, sparse/1, ..., one for each part of the scene that could not be
   // connected to the others.
   void Map();
-  // Matches the pairs that guided matching skipped (of more than 300 photographs, more of the
-  // similar ones) and maps again. Adds its models to those of Map.
-  void MatchAllAndMap();
+  // Matches the pairs that guided matching skipped and maps again. Of more than 300 photographs
+  // only more of the similar ones, and those that are not registered with all that are. Adds its
+  // models to those of Map.
+  void MatchAllAndMap(const std::set<std::string>& registered);
   // Maps again with lower thresholds. Adds its models to those of Map.
   void MapRelaxed();
 
@@ -76,6 +78,8 @@ class ColmapSteps {
                   const Arguments& arguments) const;
   int FirstOctave() const;
   std::vector<ImagePair> SimilarPairs(const ColmapDatabase& database, int each) const;
+  std::vector<ImagePair> RemainingPairs(const ColmapDatabase& database,
+                                        const std::set<std::string>& registered) const;
   void MatchInParts(const std::string& step, const std::vector<ImagePair>& pairs,
                     ColmapDatabase& database) const;
   void MapAgain(const std::string& step, const Arguments& thresholds);

@@ -44,4 +44,24 @@ std::vector<ImagePair> MostSimilarPairs(const std::vector<std::pair<ImagePair, i
   return {selected.begin(), selected.end()};
 }
 
+std::vector<ImagePair> PairsBetween(const std::vector<int>& first, const std::vector<int>& second,
+                                    std::size_t most) {
+  std::set<ImagePair> pairs;
+  if (first.empty() || second.empty()) return {};
+  const std::size_t each = std::clamp<std::size_t>(most / first.size(), 1, second.size());
+  for (const int i : first) {
+    for (std::size_t k = 0; k < each; ++k) {
+      const int j = second[k * second.size() / each];
+      if (i != j) pairs.insert({std::min(i, j), std::max(i, j)});
+    }
+  }
+  return {pairs.begin(), pairs.end()};
+}
+
+std::vector<ImagePair> Joined(const std::vector<ImagePair>& a, const std::vector<ImagePair>& b) {
+  std::set<ImagePair> pairs(a.begin(), a.end());
+  pairs.insert(b.begin(), b.end());
+  return {pairs.begin(), pairs.end()};
+}
+
 }  // namespace nerf::sfm

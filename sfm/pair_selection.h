@@ -22,4 +22,12 @@ std::vector<ImagePair> SequentialPairs(int count, int overlap);
 std::vector<ImagePair> MostSimilarPairs(const std::vector<std::pair<ImagePair, int>>& similar,
                                         int count, int each, int neighbours);
 
+// Each of `first` with each of `second`, or, where these are more than `most` pairs, with as many
+// of them, at equal distances by name.
+std::vector<ImagePair> PairsBetween(const std::vector<int>& first, const std::vector<int>& second,
+                                    std::size_t most);
+
+// The pairs of both.
+std::vector<ImagePair> Joined(const std::vector<ImagePair>& a, const std::vector<ImagePair>& b);
+
 }  // namespace nerf::sfm

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <set>
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
@@ -42,7 +43,8 @@ bool IsBetter(const Reconstruction& a, const Reconstruction& b) {
 }
 
 // Judges the models of one attempt, and keeps the best so far.
-void TakeBest(const ColmapSteps& steps, Reconstruction& best) {
+//   good  all models that are good, added to
+void TakeBest(const ColmapSteps& steps, Reconstruction& best, std::vector<PosedImages>& good) {
   const std::vector<fs::path> models = steps.Models();
   if (models.empty()) return;
   const ColmapDatabase database(steps.Database());
@@ -61,6 +63,7 @@ void TakeBest(const ColmapSteps& steps, Reconstruction& best) {
       best.largest_broken =
           std::max(best.largest_broken, static_cast<int>(candidate.posed.images.size()));
     }
+    if (candidate.verdict.trust == Trust::kGood) good.push_back(candidate.posed);
     if (!IsBetter(candidate, best)) continue;
     best.model = models[i];
     best.misplaced = candidate.misplaced;
@@ -79,6 +82,12 @@ void Choose(const fs::path& sparse, Reconstruction& best) {
     WriteColmapText(best.posed, best.model);
   }
   ChooseModel(sparse, best.model);
+}
+
+std::set<std::string> NamesOf(const PosedImages& posed) {
+  std::set<std::string> names;
+  for (const PosedImage& image : posed.images) names.insert(image.name);
+  return names;
 }
 
 bool IsEnough(const Reconstruction& best, int photos) {
@@ -104,7 +113,7 @@ void AddSeconds(const ColmapSteps& steps, const std::string& prefix, Reconstruct
 void TryFiner(const fs::path& workspace, const ColmapOptions& options,
               const std::vector<PhotoFile>& files, const std::vector<Photo>& photos,
               const std::vector<ColmapImage>& plan, const std::string& matcher,
-              Reconstruction& best) {
+              Reconstruction& best, std::vector<PosedImages>& good) {
   const int count = static_cast<int>(photos.size());
   int side = 0;
   for (const Photo& photo : photos) side = std::max({side, photo.width, photo.height});
@@ -122,11 +131,11 @@ void TryFiner(const fs::path& workspace, const ColmapOptions& options,
   again.ExtractFeatures();
   again.Match(matcher);
   again.Map();
-  TakeBest(again, best);
+  TakeBest(again, best, good);
   if (2 * best.posed.images.size() < photos.size() || best.verdict.trust == Trust::kBroken) {
     Say(best, count, "mapping again with lower thresholds");
     again.MapRelaxed();
-    TakeBest(again, best);
+    TakeBest(again, best, good);
   }
   AddSeconds(again, "finer_", best);
 }
@@ -138,27 +147,29 @@ Reconstruction Reconstruct(const fs::path& workspace, const ColmapOptions& optio
                            const std::vector<ColmapImage>& plan, const std::string& matcher) {
   const int count = static_cast<int>(photos.size());
   Reconstruction best;
+  std::vector<PosedImages> good;
   ColmapSteps steps(workspace, options, count);
   best.log = steps.LogFile("mapper").parent_path();
   steps.PrepareImages(files, photos, plan);
   steps.ExtractFeatures();
   steps.Match(matcher);
   steps.Map();
-  TakeBest(steps, best);
+  TakeBest(steps, best, good);
   if (matcher == "guided" && !IsEnough(best, count)) {
     Say(best, count, "matching the remaining pairs");
-    steps.MatchAllAndMap();
-    TakeBest(steps, best);
+    steps.MatchAllAndMap(NamesOf(best.posed));
+    TakeBest(steps, best, good);
   }
   AddSeconds(steps, "", best);
   if (!IsEnough(best, count)) {
     try {
-      TryFiner(workspace, options, files, photos, plan, matcher, best);
+      TryFiner(workspace, options, files, photos, plan, matcher, best, good);
     } catch (const InputError& error) {
       if (best.posed.images.empty()) throw;
       spdlog::warn("the attempt with more features failed: {}", error.what());
     }
   }
+  JudgeAgreement(best.posed, good, best.verdict);
   Choose(steps.Sparse(), best);
   return best;
 }

@@ -7,10 +7,12 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "nerf/base/quantile.h"
 #include "nerf/scene/scene_normalization.h"
 #include "sfm/pair_selection.h"
+#include "sfm/pose_error.h"
 
 namespace nerf::sfm {
 namespace {
@@ -23,7 +25,9 @@ constexpr double kMisplaced = 0.8;                           // of the matches o
 constexpr double kFewMisplaced = 0.1, kManyMisplaced = 0.3;  // of the photographs
 constexpr double kFewObservations = 60;                      // in a photograph
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNarrow = 2.5;  // degrees
+constexpr double kNarrow = 2.5;            // degrees
+constexpr long kSharedToCompare = 8;       // photographs
+constexpr double kMostDisagreement = 1.5;  // degrees
 constexpr double kFarRadius = 8, kMostFar = 0.5;
 
 double LargestAngle(const PosedImages& model, const SparsePoint& point) {
@@ -141,6 +145,25 @@ ReconstructionVerdict JudgeReconstruction(const PosedImages& model,
                        100 * f.far));
   }
   return verdict;
+}
+
+void JudgeAgreement(const PosedImages& model, std::span<const PosedImages> others,
+                    ReconstructionVerdict& verdict) {
+  double& disagreement = verdict.figures.disagreement;
+  for (const PosedImages& other : others) {
+    std::set<std::string> names;
+    for (const PosedImage& image : other.images) names.insert(image.name);
+    const auto shared = std::ranges::count_if(
+        model.images, [&](const PosedImage& image) { return names.contains(image.name); });
+    if (shared < kSharedToCompare) continue;
+    disagreement = std::max(disagreement, ComparePoses(other, model).rotation_median);
+  }
+  if (disagreement <= kMostDisagreement) return;
+  verdict.trust = std::max(verdict.trust, Trust::kDoubtful);
+  verdict.reason += fmt::format(
+      "{}photographs stand {:.1f} degrees from where a smaller reconstruction has them: its parts "
+      "were joined by few matches; take more photographs between them",
+      verdict.reason.empty() ? "" : "; ", disagreement);
 }
 
 PosedImages WithoutImages(const PosedImages& model, const std::vector<int>& images) {

@@ -24,7 +24,9 @@ struct ReconstructionFigures {
   double angle = 0;            // between the rays to a point, the largest of each, median; degrees
   double fitting = 0;          // share of the matches of two photographs that fit their poses
   std::vector<int> misplaced;  // photographs of which less than 80 % of the matches fit; indices
-  double far = 0;              // share of the points beyond 8 radii of what the cameras look at
+  // How far photographs stand from where smaller models have them, the largest median; degrees.
+  double disagreement = 0;
+  double far = 0;  // share of the points beyond 8 radii of what the cameras look at
 };
 
 struct ReconstructionVerdict {
@@ -42,6 +44,12 @@ std::vector<SeenTwice> MatchesOf(const PosedImages& model, const ColmapDatabase&
 // Without any there is nothing to judge by, and it is taken for good.
 ReconstructionVerdict JudgeReconstruction(const PosedImages& model,
                                           std::span<const SeenTwice> matches);
+
+// Compares a model with others of the same photographs, each put over it as well as it can be:
+// those that share eight photographs or more. A model in which they stand elsewhere is doubtful,
+// although each pair may fit: parts were joined wrongly, or bent.
+void JudgeAgreement(const PosedImages& model, std::span<const PosedImages> others,
+                    ReconstructionVerdict& verdict);
 
 // A model without some of its images, by index, ascending; and without points that fewer than two
 // of the others see.

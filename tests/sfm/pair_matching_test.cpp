@@ -114,5 +114,17 @@ TEST(PairSelection, OfASequenceIsNeighboursAndPowersOfTwo) {
   EXPECT_EQ(AllPairs(1).size(), 0u);
 }
 
+TEST(PairsBetween, AreAllOrAsManyAsAllowed) {
+  EXPECT_EQ(
+      PairsBetween({5, 0}, {1, 2, 3, 4}, 100),
+      (std::vector<ImagePair>{{0, 1}, {0, 2}, {0, 3}, {0, 4}, {1, 5}, {2, 5}, {3, 5}, {4, 5}}));
+  EXPECT_EQ(PairsBetween({5, 0}, {1, 2, 3, 4}, 4),
+            (std::vector<ImagePair>{{0, 1}, {0, 3}, {1, 5}, {3, 5}}));
+  EXPECT_TRUE(PairsBetween({}, {1, 2}, 100).empty());
+  EXPECT_TRUE(PairsBetween({1, 2}, {}, 100).empty());
+  EXPECT_EQ(Joined({{0, 1}, {2, 3}}, {{0, 1}, {1, 2}}),
+            (std::vector<ImagePair>{{0, 1}, {1, 2}, {2, 3}}));
+}
+
 }  // namespace
 }  // namespace nerf::sfm

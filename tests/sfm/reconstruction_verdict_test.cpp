@@ -112,5 +112,41 @@ TEST_F(Verdicts, WithoutMatchesThereIsNothingToJudgeBy) {
   EXPECT_EQ(JudgeReconstruction(model_, {}).trust, Trust::kGood);
 }
 
+// Each of ten photographs stands two to four degrees from where the other model has it.
+TEST_F(Verdicts, AModelThatOthersContradictIsDoubtful) {
+  PosedImages bent = model_;
+  for (int i = 0; i < 10; ++i) {
+    bent.images[i].world_from_camera.rotate(
+        Eigen::AngleAxisd(0.035 + 0.002 * i, Eigen::Vector3d(i % 3, 1, i % 2).normalized()));
+  }
+  PosedImages part = model_;
+  part.images.resize(10);
+  ReconstructionVerdict verdict;
+  JudgeAgreement(bent, {{part}}, verdict);
+  EXPECT_EQ(verdict.trust, Trust::kDoubtful);
+  EXPECT_GT(verdict.figures.disagreement, 1.5);
+  EXPECT_THAT(verdict.reason, HasSubstr("smaller reconstruction"));
+}
+
+TEST_F(Verdicts, AModelThatOthersConfirmIsGood) {
+  // In another frame and unit.
+  PosedImages part = model_;
+  part.images.resize(10);
+  const Eigen::Isometry3d moved(Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized()));
+  for (PosedImage& image : part.images) {
+    image.world_from_camera = moved * image.world_from_camera;
+    image.world_from_camera.translation() *= 3;
+  }
+  ReconstructionVerdict verdict;
+  JudgeAgreement(model_, {{part, model_}}, verdict);
+  EXPECT_EQ(verdict.trust, Trust::kGood);
+  EXPECT_LT(verdict.figures.disagreement, 1e-6);
+  // Few shared photographs are no evidence.
+  part.images.resize(4);
+  part.images[1].world_from_camera.rotate(Eigen::AngleAxisd(1, Eigen::Vector3d::UnitX()));
+  JudgeAgreement(model_, {{part}}, verdict);
+  EXPECT_EQ(verdict.trust, Trust::kGood);
+}
+
 }  // namespace
 }  // namespace nerf::sfm
