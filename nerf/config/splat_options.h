@@ -9,19 +9,19 @@ struct SplatOptions {
   int count = 50000;
   int steps = 4000;
   int harmonics_order = 3;
-  double structural = 0.2;
+  double structural = 0.3;
   double half_resolution = 0.3;
   double split_until = 0.7;
   int split_every = 50;
   double split_share = 0.05;
   double least_opacity = 0.02;
-  double opacity_penalty = 0.04;
-  double mean_rate = 1e-2;
-  double scale_rate = 4e-2;
-  double rotation_rate = 2e-2;
-  double opacity_rate = 0.1;
-  double color_rate = 2e-2;
-  double harmonics_rate = 2e-3;
+  double opacity_penalty = 0.02;
+  double mean_rate = 6e-3;
+  double scale_rate = 2.4e-2;
+  double rotation_rate = 1.2e-2;
+  double opacity_rate = 0.06;
+  double color_rate = 1.2e-2;
+  double harmonics_rate = 1.2e-3;
   double last_rate = 0.1;
   double last_mean_rate = 0.01;
 
@@ -42,7 +42,9 @@ struct SplatOptions {
     option("least_opacity", o.least_opacity, "", Between(0, 1), "below it a Gaussian is invisible");
     option("opacity_penalty", o.opacity_penalty, "of the loss", AtLeast(0),
            "on the opacity of each Gaussian");
-    option("mean_rate", o.mean_rate, "normalized units", AtLeast(0), "learning rate of positions");
+    option("mean_rate", o.mean_rate, "normalized units", AtLeast(0),
+           "learning rate of positions, in a fit of 2000 iterations; others: by the root of their "
+           "number");
     option("scale_rate", o.scale_rate, "", AtLeast(0), "of the logarithms of sizes");
     option("rotation_rate", o.rotation_rate, "", AtLeast(0), "of rotations");
     option("opacity_rate", o.opacity_rate, "", AtLeast(0), "of opacities before the sigmoid");

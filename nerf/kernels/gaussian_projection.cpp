@@ -492,7 +492,9 @@ void BackwardImpl(const GaussianCamera& camera, int order, const float* block,
     V by_q[4];
     BackThroughRotation(f, by_g, by_q);
     for (int k = 0; k < 4; ++k) hn::StoreU(keep(by_q[k]), d, out + 16 * (kRotationRow + k));
-    const V by_opacity = m.sum * (Constant(1) - f.opacity * Constant(1 / kMostOpacity));
+    // 1 - sigmoid, without a difference of equal numbers.
+    const V logit = hn::Min(hn::LoadU(d, p + 16 * kOpacityRow), Constant(80));
+    const V by_opacity = m.sum / (Constant(1) + hn::CallExp(d, hn::Max(logit, Constant(-80))));
     hn::StoreU(keep(by_opacity), d, out + 16 * kOpacityRow);
     hn::StoreU(keep(hn::Sqrt(g.x * g.x + g.y * g.y)), d, on_screen + lane);
     if (pose != nullptr) {

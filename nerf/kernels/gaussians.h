@@ -30,7 +30,9 @@ inline constexpr float kMostOpacity = 0.99f;
 inline constexpr float kLeastAlpha = 1.0f / 255;
 // Blending ends where the transmittance of all pixels of a row of a tile is below this.
 inline constexpr float kStopTransmittance = 1e-4f;
-// Variance of a pixel's footprint, squared pixels; a box has 1/12.
+// Variance of the footprint of a pixel, squared pixels; a box has 1/12. More would blur: 0.2 costs
+// 0.1 to 0.3 dB. With less the sum over pixel centres of what is much smaller than a pixel depends
+// on where it is between them (with 0.1 by up to 28 %); its average is right in any case.
 inline constexpr float kPixelVariance = 0.1f;
 
 // Where a camera stands and how it maps points to pixels, see LensDistortion.

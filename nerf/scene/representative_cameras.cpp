@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace nerf {
 namespace {
@@ -49,10 +50,29 @@ bool Improve(const Eigen::MatrixXd& distances, std::vector<std::size_t>& chosen,
   return chosen[k] != before;
 }
 
+// Of the cameras that are nearest to the chosen one, that in the middle of their distances: the
+// chosen one itself has the most neighbours, so that its view is the easiest.
+std::size_t TypicalOf(const Eigen::MatrixXd& distances, const std::vector<std::size_t>& chosen,
+                      std::size_t k) {
+  std::vector<std::pair<double, std::size_t>> group;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(distances.cols()); ++i) {
+    const auto to_chosen = [&](std::size_t other) {
+      return distances(static_cast<Eigen::Index>(other), static_cast<Eigen::Index>(i));
+    };
+    const bool is_chosen = std::ranges::find(chosen, i) != chosen.end();
+    const std::size_t nearest = *std::ranges::min_element(chosen, {}, to_chosen);
+    if (is_chosen ? i == chosen[k] : nearest == chosen[k])
+      group.emplace_back(to_chosen(chosen[k]), i);
+  }
+  std::ranges::sort(group);
+  return group[group.size() / 2].second;
+}
+
 }  // namespace
 
 std::vector<std::size_t> RepresentativeCameras(
     const std::vector<Eigen::Isometry3d>& world_from_camera, std::size_t count) {
+  if (count == 0) return {};
   const Eigen::MatrixXd distances = Distances(world_from_camera);
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < count; ++k) {
@@ -66,8 +86,10 @@ std::vector<std::size_t> RepresentativeCameras(
     changed = false;
     for (std::size_t k = 0; k < count; ++k) changed = Improve(distances, chosen, k) || changed;
   }
-  std::ranges::sort(chosen);
-  return chosen;
+  std::vector<std::size_t> typical;
+  for (std::size_t k = 0; k < count; ++k) typical.push_back(TypicalOf(distances, chosen, k));
+  std::ranges::sort(typical);
+  return typical;
 }
 
 }  // namespace nerf

@@ -6,11 +6,11 @@
 
 namespace nerf {
 
-// Chooses cameras that stand for all: each has one of them near, in position and direction of view.
-// Positions and directions count alike, positions relative to their spread. Minimizes the sum of
-// the distances to the nearest chosen camera, greedily and then by swaps; deterministic, O(count
-// N^2) for each round of swaps. Source: Kaufman and Rousseeuw 1990, "Finding Groups in Data",
-// chapter 2 (k-medoids, PAM).
+// Chooses cameras that stand for all. They are divided into groups of similar position and
+// direction of view (positions relative to their spread), so that the sum of the distances to the
+// middle camera of each group is small: greedily and then by swaps; deterministic, O(count N^2) for
+// each round of swaps. Of each group the one at the median distance from the middle is taken.
+// Source: Kaufman and Rousseeuw 1990, "Finding Groups in Data", chapter 2 (k-medoids, PAM).
 //   world_from_camera  OpenCV axes
 //   count              at most the number of cameras
 //   returns            indices, ascending

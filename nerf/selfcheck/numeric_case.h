@@ -47,6 +47,7 @@ std::vector<NumericCase> EncodingCases();
 std::vector<NumericCase> NetworkCases();
 std::vector<NumericCase> CameraCases();
 std::vector<NumericCase> EngineCases();
+std::vector<NumericCase> GaussianCases();
 
 // The largest absolute value of the errors added; NaN counts as infinite.
 class WorstError {

@@ -6,8 +6,9 @@ namespace nerf {
 
 std::vector<NumericCase> NumericCases() {
   std::vector<NumericCase> cases;
-  for (const auto& of_one_layer : {CompositingCases, CompositingGradientCases, SamplingCases,
-                                   EncodingCases, NetworkCases, CameraCases, EngineCases}) {
+  for (const auto& of_one_layer :
+       {CompositingCases, CompositingGradientCases, SamplingCases, EncodingCases, NetworkCases,
+        CameraCases, EngineCases, GaussianCases}) {
     for (NumericCase& numeric_case : of_one_layer()) cases.push_back(std::move(numeric_case));
   }
   return cases;

@@ -21,7 +21,7 @@ constexpr std::uint64_t kSplitStream = 0x67617573735f5f33ull;
 constexpr std::uint64_t kBackgroundStream = 0x67617573735f5f34ull;
 // Learning rates are those of a fit of so many iterations, and for others times (this / their
 // number)^power.
-constexpr double kRatedSteps = 2000, kRatePower = 0.7;
+constexpr double kRatedSteps = 2000, kRatePower = 0.5;
 // A Gaussian becomes two of this size, a standard deviation of its own apart.
 constexpr float kSplitScale = 1 / 1.5f, kSplitDistance = 0.7f;
 

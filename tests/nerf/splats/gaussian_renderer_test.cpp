@@ -10,8 +10,8 @@
 #include "nerf/base/parallel.h"
 #include "nerf/kernels/simd_level.h"
 #include "nerf/scene/camera_models.h"
+#include "nerf/selfcheck/gaussian_scene.h"
 #include "nerf/splats/gaussian_camera.h"
-#include "tests/support/gaussian_scene.h"
 
 namespace nerf {
 namespace {
@@ -128,11 +128,11 @@ double CentralDifference(const std::function<double(double)>& f) {
 class GaussiansOfEveryLens : public testing::TestWithParam<int> {
  protected:
   GaussianView view_{CameraOf(static_cast<CameraModel>(GetParam())), SomePose(), 0.02};
-  std::vector<Gaussian> gaussians_ = test::RandomGaussians(20, 3, 7);
+  std::vector<Gaussian> gaussians_ = RandomGaussians(20, 3, 7);
 };
 
 TEST_P(GaussiansOfEveryLens, AreDrawnAsTheReference) {
-  const std::vector<float> blocks = test::InBlocks(gaussians_, 3);
+  const std::vector<float> blocks = InBlocks(gaussians_, 3);
   const std::vector<GaussianPixel> truth = DrawGaussians(gaussians_, view_);
   const kernels::GaussianCamera camera =
       MakeGaussianCamera(view_.camera, view_.camera_from_normalized.inverse(), view_.near);
@@ -158,14 +158,14 @@ TEST_P(GaussiansOfEveryLens, AreDrawnAsTheReference) {
 }
 
 TEST_P(GaussiansOfEveryLens, HaveTheGradientsOfTheReference) {
-  const std::vector<float> blocks = test::InBlocks(gaussians_, 3);
+  const std::vector<float> blocks = InBlocks(gaussians_, 3);
   const int rows = kernels::GaussianRows(3);
   // By central differences, once for all levels.
   std::vector<double> truth;
   std::vector<double> scale_of_row(rows, 0.0);
   for (Gaussian& g : gaussians_) {
     for (int row = 0; row < rows; ++row) {
-      double& value = test::RowOf(g, row);
+      double& value = RowOf(g, row);
       const double before = value;
       truth.push_back(CentralDifference([&](double step) {
         value = before + step;

@@ -6,7 +6,7 @@
 #include "nerf/kernels/gaussians.h"
 #include "nerf/reference/gaussians.h"
 
-namespace nerf::test {
+namespace nerf {
 
 // The parameters of Gaussians in blocks, as the kernels take them.
 inline std::vector<float> InBlocks(const std::vector<reference::Gaussian>& gaussians, int order) {
@@ -66,4 +66,4 @@ inline std::vector<reference::Gaussian> RandomGaussians(int count, int order, un
   return gaussians;
 }
 
-}  // namespace nerf::test
+}  // namespace nerf

@@ -1,0 +1,174 @@
+#include "nerf/splats/gaussian_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "nerf/base/parallel.h"
+#include "nerf/scene/camera.h"
+#include "nerf/selfcheck/gaussian_scene.h"
+#include "nerf/splats/gaussian_camera.h"
+#include "nerf/splats/initial_gaussians.h"
+
+namespace nerf {
+namespace {
+
+constexpr double kNear = 0.02;
+
+// Photographs of Gaussians from five places.
+std::vector<View> Photographs(const GaussianCloud& cloud) {
+  std::vector<View> views;
+  for (int i = 0; i < 5; ++i) {
+    View view;
+    view.camera = PinholeFromFov(50, 44, 0.7);
+    view.normalized_from_camera = Eigen::Isometry3d::Identity();
+    view.normalized_from_camera.translation() = Eigen::Vector3d(0.3 * i - 0.6, 0.1 * (i % 2), 0);
+    GaussianRenderer renderer;
+    const GaussianPicture& picture = renderer.Draw(
+        MakeGaussianCamera(view.camera, view.normalized_from_camera, kNear), cloud.Parameters());
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        for (int c = 0; c < 3; ++c) {
+          view.rgba.push_back(static_cast<Eigen::half>(picture.Plane(c)[y * picture.stride + x]));
+        }
+        view.rgba.push_back(static_cast<Eigen::half>(1.0f));
+      }
+    }
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+GaussianCloud Scene() {
+  GaussianCloud cloud(60, 0);
+  const std::vector<float> values = InBlocks(RandomGaussians(60, 0, 5), 0);
+  std::memcpy(cloud.parameters.data_ptr<float>(), values.data(), values.size() * sizeof(float));
+  return cloud;
+}
+
+// Grey Gaussians somewhere about those of the scene.
+GaussianCloud Start(std::int64_t count, int order) {
+  std::vector<ColoredPoint> points;
+  for (const reference::Gaussian& g : RandomGaussians(80, 0, 9)) {
+    points.push_back({g.mean, Eigen::Vector3f(0.5f, 0.5f, 0.5f)});
+  }
+  return GaussiansAtPoints(points, count, order, 1);
+}
+
+SplatOptions Options() {
+  SplatOptions options;
+  options.split_every = 20;
+  return options;
+}
+
+std::vector<float> Fit(const std::vector<View>& views, int steps, int order = 1) {
+  GaussianFit fit(views, false, Start(200, order), Options(), kNear, 1);
+  for (int i = 0; i < steps; ++i) {
+    fit.Step({static_cast<double>(i) / steps, static_cast<double>(steps)});
+  }
+  const std::span<const float> values = fit.Cloud().Parameters().values;
+  return {values.begin(), values.end()};
+}
+
+TEST(GaussianFit, FindsTheColoursOfPhotographs) {
+  const std::vector<View> views = Photographs(Scene());
+  GaussianFit fit(views, false, Start(200, 0), Options(), kNear, 1);
+  constexpr int kSteps = 300;
+  double first = 0, last = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double loss = fit.Step({static_cast<double>(i) / kSteps, kSteps});
+    if (i < 10) first += loss / 10;
+    if (i >= kSteps - 10) last += loss / 10;
+  }
+  EXPECT_LT(last, 0.3 * first);
+}
+
+TEST(GaussianFit, IsTheSameBitsForAnyNumberOfThreads) {
+  const std::vector<View> views = Photographs(Scene());
+  const int before = NumThreads();
+  std::vector<std::vector<float>> results;
+  for (const int threads : {1, 2, 3}) {
+    SetNumThreads(threads);
+    results.push_back(Fit(views, 60));
+  }
+  SetNumThreads(before);
+  for (const auto& result : results) {
+    ASSERT_EQ(result.size(), results[0].size());
+    EXPECT_EQ(std::memcmp(result.data(), results[0].data(), result.size() * sizeof(float)), 0);
+  }
+}
+
+TEST(GaussianFit, InvisibleGaussiansAreUsed) {
+  const std::vector<View> views = Photographs(Scene());
+  GaussianFit fit(views, false, Start(200, 0), Options(), kNear, 1);
+  const auto visible = [&] {
+    int count = 0;
+    for (std::int64_t i = 0; i < fit.Cloud().count; ++i) {
+      if (fit.Cloud().At(i, kernels::kOpacityRow) > -4) ++count;
+    }
+    return count;
+  };
+  EXPECT_EQ(visible(), 80);
+  for (int i = 0; i < 100; ++i) fit.Step({i / 200.0, 200});
+  EXPECT_GT(visible(), 100);
+}
+
+TEST(GaussianFit, PixelsThatAreNotStoredDoNotCount) {
+  std::vector<View> views = Photographs(Scene());
+  std::vector<View> masked = views;
+  // Without the left half; what was there before must not matter.
+  for (std::vector<View>* const of : {&views, &masked}) {
+    for (View& view : *of) {
+      std::vector<Eigen::half> kept;
+      for (int y = 0; y < 44; ++y) {
+        for (int x = 25; x < 50; ++x) {
+          view.valid_pixels.push_back(static_cast<std::uint32_t>(y * 50 + x));
+          for (int c = 0; c < 4; ++c) kept.push_back(view.rgba[4 * (y * 50 + x) + c]);
+        }
+      }
+      view.rgba = std::move(kept);
+    }
+  }
+  GaussianFit fit(masked, false, Start(200, 0), Options(), kNear, 1);
+  double last = 0;
+  for (int i = 0; i < 200; ++i) last = fit.Step({i / 200.0, 200});
+  EXPECT_LT(last, 0.1);
+}
+
+TEST(GaussiansAtPoints, AreAsLargeAsTheirSpacing) {
+  std::vector<ColoredPoint> points;
+  for (int i = 0; i < 27; ++i) {
+    points.push_back({Eigen::Vector3d(i % 3, i / 3 % 3, i / 9) * 0.25, {1, 0.5f, 0}});
+  }
+  const GaussianCloud cloud = GaussiansAtPoints(points, 40, 2, 1);
+  EXPECT_EQ(cloud.count, 40);
+  for (std::int64_t i = 0; i < 27; ++i) {
+    EXPECT_NEAR(cloud.At(i, kernels::kLogScaleRow), std::log(0.25), 1e-5);
+    EXPECT_NEAR(cloud.At(i, kernels::kColorRow) * 0.28209479 + 0.5, 1, 1e-5);
+    EXPECT_NEAR(1 / (1 + std::exp(-cloud.At(i, kernels::kOpacityRow))), 0.1, 1e-5);
+  }
+  EXPECT_LT(cloud.At(30, kernels::kOpacityRow), -10);
+  EXPECT_EQ(GaussiansAtPoints(points, 10, 0, 1).count, 10);
+}
+
+TEST(SpatialOrder, PutsNeighboursNextToEachOther) {
+  GaussianCloud cloud(64, 0);
+  for (std::int64_t i = 0; i < 64; ++i) {
+    const std::int64_t j = i * 37 % 64;
+    for (int k = 0; k < 3; ++k) {
+      cloud.At(i, kernels::kMeanRow + k) = static_cast<float>(j >> (2 * k) & 3);
+    }
+  }
+  const GaussianCloud ordered = Reordered(cloud, SpatialOrder(cloud));
+  double distance = 0;
+  for (std::int64_t i = 1; i < 64; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      distance +=
+          std::abs(ordered.At(i, kernels::kMeanRow + k) - ordered.At(i - 1, kernels::kMeanRow + k));
+    }
+  }
+  EXPECT_LT(distance / 63, 2);
+}
+
+}  // namespace
+}  // namespace nerf
