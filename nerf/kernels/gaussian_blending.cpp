@@ -139,84 +139,107 @@ std::int64_t ForwardImpl(const ProjectedGaussian* gaussians, const Tile& tile,
 
 HWY_INLINE float Sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
+HWY_INLINE V LoadAt(const std::array<float, kTilePixels>& values, int at) {
+  return hn::Load(D(), values.data() + at);
+}
+
+// Sums over the pixels of a tile for one Gaussian, lane by lane.
+struct MomentSums {
+  MomentSums() : sum(hn::Zero(D())) { x = y = xx = xy = yy = r = g = b = distance = sum; }
+
+  // What all rows of a column of vectors have in common is added once.
+  //   of_column    dL/d(ln alpha)    of_column_y  times dy
+  HWY_INLINE void AddColumn(V of_column, V of_column_y, V dx) {
+    const V of_column_x = of_column * dx;
+    sum = sum + of_column;
+    x = x + of_column_x;
+    y = y + of_column_y;
+    xx = hn::MulAdd(of_column_x, dx, xx);
+    xy = hn::MulAdd(of_column_y, dx, xy);
+  }
+  HWY_INLINE GaussianMoments Total() const {
+    return {Sum(sum),     Sum(x), Sum(y), Sum(xx), Sum(xy), Sum(yy), {Sum(r), Sum(g), Sum(b)},
+            Sum(distance)};
+  }
+
+  V sum, x, y, xx, xy, yy, r, g, b, distance;
+};
+
+// The pixels of a tile in the backward pass.
+struct BackwardPixels {
+  BackwardPixels(const TilePicture& picture, const TilePicture& dL) {
+    const D d;
+    for (int at = 0; at < kTilePixels; at += kLanes) {
+      hn::Store(Constant(1), d, transmittance + at);
+      V all = LoadAt(dL.transmittance, at) * LoadAt(picture.transmittance, at) +
+              LoadAt(dL.distance, at) * LoadAt(picture.distance, at);
+      for (int c = 0; c < 3; ++c) {
+        all = hn::MulAdd(LoadAt(dL.rgb[c], at), LoadAt(picture.rgb[c], at), all);
+      }
+      hn::Store(all, d, behind + at);
+    }
+    std::fill_n(alive, kAcross, kAllBands);
+  }
+
+  alignas(64) float transmittance[kTilePixels];
+  alignas(64) float behind[kTilePixels];  // what is behind, times its gradients
+  std::uint32_t alive[kAcross];
+};
+
+// One Gaussian in one column of vectors.
+HWY_INLINE void BackwardColumn(const ProjectedGaussian& g, const PixelCentres& centres, int h,
+                               std::uint32_t bands, const TilePicture& dL, BackwardPixels& pixels,
+                               MomentSums& sums) {
+  const D d;
+  const V one = Constant(1), stop = Constant(kStopTransmittance), least = Constant(g.least);
+  const V red = Constant(g.rgb[0]), green = Constant(g.rgb[1]), blue = Constant(g.rgb[2]);
+  const V far = Constant(g.distance), dx = centres.x[h] - Constant(g.x);
+  const V of_x = hn::MulAdd(dx * dx, Constant(g.xx), Constant(g.log2_opacity));
+  const V linear = dx * Constant(g.xy), yy = Constant(g.yy);
+  V column = hn::Zero(d), column_y = hn::Zero(d);
+  for (std::uint32_t rest = bands & pixels.alive[h]; rest != 0; rest &= rest - 1) {
+    const int band = __builtin_ctz(rest);
+    const int at = (band * kAcross + h) * kLanes;
+    const V dy = centres.y + Constant(static_cast<float>(band * kRowsOfVector) - g.y);
+    const V log2_alpha = hn::MulAdd(dy, hn::MulAdd(dy, yy, linear), of_x);
+    const auto counts = hn::Gt(log2_alpha, least);
+    if (hn::AllFalse(d, counts)) continue;
+    const V alpha = hn::IfThenElseZero(counts, Exp2(log2_alpha));
+    const V before = hn::Load(d, pixels.transmittance + at), weight = alpha * before;
+    const V g_r = LoadAt(dL.rgb[0], at), g_g = LoadAt(dL.rgb[1], at), g_b = LoadAt(dL.rgb[2], at);
+    const V g_far = LoadAt(dL.distance, at);
+    // dL/dweight, were it not for what is behind.
+    const V value =
+        hn::MulAdd(g_r, red, hn::MulAdd(g_g, green, hn::MulAdd(g_b, blue, g_far * far)));
+    const V behind = hn::NegMulAdd(weight, value, hn::Load(d, pixels.behind + at));
+    hn::Store(behind, d, pixels.behind + at);
+    const V by_log = alpha * (before * value - behind / (one - alpha)), by_log_y = by_log * dy;
+    sums.r = hn::MulAdd(weight, g_r, sums.r);
+    sums.g = hn::MulAdd(weight, g_g, sums.g);
+    sums.b = hn::MulAdd(weight, g_b, sums.b);
+    sums.distance = hn::MulAdd(weight, g_far, sums.distance);
+    column = column + by_log;
+    column_y = column_y + by_log_y;
+    sums.yy = hn::MulAdd(by_log_y, dy, sums.yy);
+    const V after = before - weight;
+    hn::Store(after, d, pixels.transmittance + at);
+    if (hn::AllFalse(d, hn::Gt(after, stop))) pixels.alive[h] &= ~(1u << band);
+  }
+  sums.AddColumn(column, column_y, dx);
+}
+
 void BackwardImpl(const ProjectedGaussian* gaussians, const Tile& tile, const TilePicture& picture,
                   const TilePicture& dL, GaussianMoments* moments) {
-  const D d;
-  const V one = Constant(1), zero = hn::Zero(d), stop = Constant(kStopTransmittance);
-  alignas(64) float transmittance[kTilePixels];
-  alignas(64) float behind[kTilePixels];  // dL/d(what is behind) times that
-  const auto of = [&](const std::array<float, kTilePixels>& values, int at)
-                      HWY_ATTR { return hn::Load(d, values.data() + at); };
-  for (int at = 0; at < kTilePixels; at += kLanes) {
-    hn::Store(one, d, transmittance + at);
-    V sum = of(dL.transmittance, at) * of(picture.transmittance, at) +
-            of(dL.distance, at) * of(picture.distance, at);
-    for (int c = 0; c < 3; ++c) sum = hn::MulAdd(of(dL.rgb[c], at), of(picture.rgb[c], at), sum);
-    hn::Store(sum, d, behind + at);
-  }
+  BackwardPixels pixels(picture, dL);
   const PixelCentres centres = CentresOfTile(tile);
-  std::uint32_t alive[kAcross];
-  std::fill_n(alive, kAcross, kAllBands);
   const std::size_t count = tile.entries.size();
   for (std::size_t k = 0; k < count; ++k) {
-    if (k + 4 < count) {
-      hwy::Prefetch(&gaussians[tile.entries[k + 4].gaussian]);
-    }
+    if (k + 4 < count) hwy::Prefetch(&gaussians[tile.entries[k + 4].gaussian]);
     const ProjectedGaussian& g = gaussians[tile.entries[k].gaussian];
     const std::uint32_t bands = BandsOf(g, tile);
-    const V r = Constant(g.rgb[0]), gr = Constant(g.rgb[1]), b = Constant(g.rgb[2]);
-    const V far = Constant(g.distance), least = Constant(g.least), yy = Constant(g.yy);
-    V sum = zero, sum_x = zero, sum_y = zero, sum_xx = zero, sum_xy = zero, sum_yy = zero;
-    V by_r = zero, by_g = zero, by_b = zero, by_far = zero;
-    for (int h = 0; h < kAcross; ++h) {
-      const V dx = centres.x[h] - Constant(g.x);
-      const V of_x = hn::MulAdd(dx * dx, Constant(g.xx), Constant(g.log2_opacity));
-      const V linear = dx * Constant(g.xy);
-      V column = zero, column_y = zero;
-      for (std::uint32_t rest = bands & alive[h]; rest != 0; rest &= rest - 1) {
-        const int band = __builtin_ctz(rest);
-        const int at = (band * kAcross + h) * kLanes;
-        const V dy = centres.y + Constant(static_cast<float>(band * kRowsOfVector) - g.y);
-        const V log2_alpha = hn::MulAdd(dy, hn::MulAdd(dy, yy, linear), of_x);
-        const auto counts = hn::Gt(log2_alpha, least);
-        if (hn::AllFalse(d, counts)) continue;
-        const V alpha = hn::IfThenElseZero(counts, Exp2(log2_alpha));
-        const V before = hn::Load(d, transmittance + at);
-        const V weight = alpha * before;
-        const V g_r = of(dL.rgb[0], at), g_g = of(dL.rgb[1], at), g_b = of(dL.rgb[2], at);
-        const V g_far = of(dL.distance, at);
-        // dL/dweight, were it not for what is behind.
-        const V value = hn::MulAdd(g_r, r, hn::MulAdd(g_g, gr, hn::MulAdd(g_b, b, g_far * far)));
-        const V rest_behind = hn::NegMulAdd(weight, value, hn::Load(d, behind + at));
-        hn::Store(rest_behind, d, behind + at);
-        const V by_log = alpha * (before * value - rest_behind / (one - alpha));
-        by_r = hn::MulAdd(weight, g_r, by_r);
-        by_g = hn::MulAdd(weight, g_g, by_g);
-        by_b = hn::MulAdd(weight, g_b, by_b);
-        by_far = hn::MulAdd(weight, g_far, by_far);
-        const V by_log_y = by_log * dy;
-        column = column + by_log;
-        column_y = column_y + by_log_y;
-        sum_yy = hn::MulAdd(by_log_y, dy, sum_yy);
-        const V after = before - weight;
-        hn::Store(after, d, transmittance + at);
-        if (hn::AllFalse(d, hn::Gt(after, stop))) alive[h] &= ~(1u << band);
-      }
-      const V column_x = column * dx;
-      sum = sum + column;
-      sum_x = sum_x + column_x;
-      sum_y = sum_y + column_y;
-      sum_xx = hn::MulAdd(column_x, dx, sum_xx);
-      sum_xy = hn::MulAdd(column_y, dx, sum_xy);
-    }
-    moments[tile.entries[k].slot] = {Sum(sum),
-                                     Sum(sum_x),
-                                     Sum(sum_y),
-                                     Sum(sum_xx),
-                                     Sum(sum_xy),
-                                     Sum(sum_yy),
-                                     {Sum(by_r), Sum(by_g), Sum(by_b)},
-                                     Sum(by_far)};
+    MomentSums sums;
+    for (int h = 0; h < kAcross; ++h) BackwardColumn(g, centres, h, bands, dL, pixels, sums);
+    moments[tile.entries[k].slot] = sums.Total();
   }
 }
 

@@ -57,15 +57,14 @@ RenderedView GaussianModel::Render(const ViewRequest& view) const {
   return rendered;
 }
 
-void WriteGaussians(const GaussianModel& model, double seconds, const std::filesystem::path& file) {
+void WriteGaussians(const GaussianModel& model, const std::filesystem::path& file) {
   Checkpoint checkpoint;
   checkpoint.meta = {{"config", JsonFromConfig(model.GetConfig())},
                      {"scene", JsonFromScene(model.Scene())},
                      {"step", model.Step()},
                      {"gaussians", model.Cloud().count},
                      {"harmonics_order", model.Cloud().order},
-                     {"near", model.Near()},
-                     {"training_seconds", seconds}};
+                     {"near", model.Near()}};
   checkpoint.tensors[kTensor] = model.Cloud().parameters;
   WriteCheckpoint(file, checkpoint);
 }

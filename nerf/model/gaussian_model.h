@@ -33,7 +33,7 @@ class GaussianModel : public SceneModel {
 
 // Writes a model to a file, and reads it back. Throws InputError naming a file that is missing,
 // damaged, or none of Gaussians.
-void WriteGaussians(const GaussianModel& model, double seconds, const std::filesystem::path& file);
+void WriteGaussians(const GaussianModel& model, const std::filesystem::path& file);
 GaussianModel ReadGaussians(const std::filesystem::path& file);
 
 }  // namespace nerf

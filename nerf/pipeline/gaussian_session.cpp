@@ -120,7 +120,7 @@ GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& w
   summary.steps = fit.Steps();
   summary.gaussians = model.Cloud().count;
   summary.seconds = fitting.Seconds();
-  WriteGaussians(model, summary.seconds, GaussiansPath(request.run));
+  WriteGaussians(model, GaussiansPath(request.run));
   summary.psnr = ValidationPsnr(model, run.posed);
   summary.field_psnr = ValidationPsnr(*run.model, run.posed);
   return summary;

@@ -29,6 +29,10 @@ struct GaussianPicture {
   const float* Plane(int plane) const {
     return &values[static_cast<std::size_t>(plane) * rows * stride];
   }
+  float* Row(int plane, int y) { return Plane(plane) + static_cast<std::ptrdiff_t>(y) * stride; }
+  const float* Row(int plane, int y) const {
+    return Plane(plane) + static_cast<std::ptrdiff_t>(y) * stride;
+  }
 };
 
 // The parameters of Gaussians, see kernels/gaussians.h.

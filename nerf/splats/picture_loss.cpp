@@ -52,6 +52,26 @@ void ForEachRow(int height, const Use& use) {
   });
 }
 
+// Fills the gradients of what PictureLossGradient does not write: rows below the picture, the
+// transmittance, through which the background is seen, and the distance.
+void GradientOfBackground(const std::array<float, 3>& background, int height,
+                          GaussianPicture& gradient) {
+  const std::size_t plane = static_cast<std::size_t>(gradient.rows) * gradient.stride;
+  for (int channel = 0; channel < 3; ++channel) {
+    std::fill(gradient.Row(channel, height), gradient.Plane(channel) + plane, 0.0f);
+  }
+  std::fill_n(gradient.Plane(GaussianPicture::kDistance), plane, 0.0f);
+  float* const by_T = gradient.Plane(GaussianPicture::kTransmittance);
+  ParallelFor(static_cast<std::int64_t>(plane), 4096, [&](std::int64_t first, std::int64_t last) {
+    for (std::int64_t i = first; i < last; ++i) {
+      by_T[i] = 0;
+      for (int channel = 0; channel < 3; ++channel) {
+        by_T[i] += background[channel] * gradient.Plane(channel)[i];
+      }
+    }
+  });
+}
+
 }  // namespace
 
 void TargetPicture::Resize(int new_width, int new_height) {
@@ -87,9 +107,8 @@ void PictureLoss::Composite(GaussianPicture& drawn, const TargetPicture& target,
                             const std::array<float, 3>& background) {
   truth_.resize(static_cast<std::size_t>(3) * target.height * target.stride);
   ForEachRow(target.height, [&](int channel, int y) {
-    const float* const T = drawn.Plane(GaussianPicture::kTransmittance) +
-                           static_cast<std::ptrdiff_t>(y) * drawn.stride;
-    float* const rgb = drawn.Plane(channel) + static_cast<std::ptrdiff_t>(y) * drawn.stride;
+    const float* const T = drawn.Row(GaussianPicture::kTransmittance, y);
+    float* const rgb = drawn.Row(channel, y);
     const std::span<float> truth = Rows(truth_, channel, target.height, target.stride).At(y);
     const float* const shown = target.Row(channel, y);
     const float* const opacity = target.Row(TargetPicture::kOpacity, y);
@@ -100,81 +119,65 @@ void PictureLoss::Composite(GaussianPicture& drawn, const TargetPicture& target,
   });
 }
 
+// The first two passes. Returns the sum of weight SSIM of each row of each channel.
+std::vector<double> PictureLoss::Compare(const GaussianPicture& drawn,
+                                         const TargetPicture& target) {
+  const int height = target.height, stride = target.stride;
+  const auto width = static_cast<std::size_t>(target.width);
+  products_.resize(static_cast<std::size_t>(3) * kProducts * height * stride);
+  const auto product = [&](int channel, int k) {
+    return Rows(products_, channel * kProducts + k, height, stride);
+  };
+  std::vector<double> similar(static_cast<std::size_t>(3) * height);
+  ForEachRow(height, [&](int channel, int y) {
+    kernels::ProductRows rows;
+    for (int k = 0; k < kProducts; ++k) rows[k] = product(channel, k).At(y);
+    kernels::BlurProducts({drawn.Row(channel, y), width},
+                          Rows(truth_, channel, height, stride).At(y).first(width), rows);
+  });
+  ForEachRow(height, [&](int channel, int y) {
+    std::array<RowsAround, kProducts> around;
+    for (int k = 0; k < kProducts; ++k) around[k] = product(channel, k).Around(y);
+    kernels::DerivativeRows rows;
+    for (int k = 0; k < 3; ++k) rows[k] = Rows(derivatives_, channel * 3 + k, height, stride).At(y);
+    similar[channel * height + y] = kernels::SimilarityDerivatives(
+        around, {target.Row(TargetPicture::kWeight, y), static_cast<std::size_t>(stride)}, rows);
+  });
+  return similar;
+}
+
 double PictureLoss::Evaluate(GaussianPicture& drawn, const TargetPicture& target,
                              const std::array<float, 3>& background, double structural,
                              GaussianPicture& gradient) {
   const int height = target.height, stride = target.stride;
   const auto width = static_cast<std::size_t>(target.width);
+  const auto padded = static_cast<std::size_t>(stride);
   Composite(drawn, target, background);
   gradient.Resize(drawn.width, drawn.height);
-  products_.resize(static_cast<std::size_t>(3) * kProducts * height * stride);
-  derivatives_.resize(static_cast<std::size_t>(3) * 3 * height * stride);
-  const auto truth = [&](int channel) { return Rows(truth_, channel, height, stride); };
-  const auto product = [&](int channel, int k) {
-    return Rows(products_, channel * kProducts + k, height, stride);
-  };
-  const auto derivative = [&](int channel, int k) {
-    return Rows(derivatives_, channel * 3 + k, height, stride);
-  };
-  const auto drawn_row = [&](int channel, int y) {
-    return std::span<const float>(
-        drawn.Plane(channel) + static_cast<std::ptrdiff_t>(y) * drawn.stride, width);
-  };
-  const auto padded = static_cast<std::size_t>(stride);
-  const bool is_structural = structural > 0;
-  std::vector<double> similar(static_cast<std::size_t>(3) * height, 0.0), plain(similar.size());
-  if (is_structural) {
-    ForEachRow(height, [&](int channel, int y) {
-      kernels::ProductRows rows;
-      for (int k = 0; k < kProducts; ++k) rows[k] = product(channel, k).At(y);
-      kernels::BlurProducts(drawn_row(channel, y), truth(channel).At(y).first(width), rows);
-    });
-  }
-  std::ranges::fill(derivatives_, 0.0f);
-  if (is_structural) {
-    ForEachRow(height, [&](int channel, int y) {
-      std::array<RowsAround, kProducts> around;
-      for (int k = 0; k < kProducts; ++k) around[k] = product(channel, k).Around(y);
-      kernels::DerivativeRows rows;
-      for (int k = 0; k < 3; ++k) rows[k] = derivative(channel, k).At(y);
-      similar[channel * height + y] = kernels::SimilarityDerivatives(
-          around, {target.Row(TargetPicture::kWeight, y), padded}, rows);
-    });
-  }
+  derivatives_.assign(static_cast<std::size_t>(3) * 3 * height * stride, 0.0f);
+  std::vector<double> similar;
+  if (structural > 0) similar = Compare(drawn, target);
+  std::vector<double> plain(static_cast<std::size_t>(3) * height);
   ForEachRow(height, [&](int channel, int y) {
     std::array<RowsAround, 3> around;
-    for (int k = 0; k < 3; ++k) around[k] = derivative(channel, k).Around(y);
-    float* const row = gradient.Plane(channel) + static_cast<std::ptrdiff_t>(y) * gradient.stride;
+    for (int k = 0; k < 3; ++k) {
+      around[k] = Rows(derivatives_, channel * 3 + k, height, stride).Around(y);
+    }
+    float* const row = gradient.Row(channel, y);
     plain[channel * height + y] = kernels::PictureLossGradient(
-        around, {drawn_row(channel, y).data(), padded}, truth(channel).At(y),
+        around, {drawn.Row(channel, y), padded}, Rows(truth_, channel, height, stride).At(y),
         {target.Row(TargetPicture::kWeight, y), padded}, static_cast<float>(structural),
         {row, padded});
     std::fill(row + width, row + padded, 0.0f);
   });
-  // By the transmittance, through the background.
-  float* const by_T = gradient.Plane(GaussianPicture::kTransmittance);
-  const std::size_t plane = static_cast<std::size_t>(gradient.rows) * gradient.stride;
-  for (int channel = 0; channel < 3; ++channel) {
-    std::fill(gradient.Plane(channel) + static_cast<std::ptrdiff_t>(height) * gradient.stride,
-              gradient.Plane(channel) + plane, 0.0f);
-  }
-  std::fill_n(gradient.Plane(GaussianPicture::kDistance), plane, 0.0f);
-  ParallelFor(static_cast<std::int64_t>(plane), 4096, [&](std::int64_t first, std::int64_t last) {
-    for (std::int64_t i = first; i < last; ++i) {
-      by_T[i] = 0;
-      for (int channel = 0; channel < 3; ++channel) {
-        by_T[i] += background[channel] * gradient.Plane(channel)[i];
-      }
-    }
-  });
+  GradientOfBackground(background, height, gradient);
   double weights = 0;
   for (int y = 0; y < height; ++y) {
     const float* const row = target.Row(TargetPicture::kWeight, y);
     weights = std::accumulate(row, row + width, weights);
   }
-  const double sum =
-      std::accumulate(plain.begin(), plain.end(), 0.0) +
-      structural * (3 * weights - std::accumulate(similar.begin(), similar.end(), 0.0));
+  const double dissimilar = 3 * weights - std::accumulate(similar.begin(), similar.end(), 0.0);
+  const double sum = std::accumulate(plain.begin(), plain.end(), 0.0) + structural * dissimilar;
   return weights > 0 ? sum / (3 * weights) : 0;
 }
 

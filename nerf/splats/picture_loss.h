@@ -44,6 +44,7 @@ class PictureLoss {
  private:
   void Composite(GaussianPicture& drawn, const TargetPicture& target,
                  const std::array<float, 3>& background);
+  std::vector<double> Compare(const GaussianPicture& drawn, const TargetPicture& target);
 
   std::vector<float> truth_;        // [3][height][stride] on the background
   std::vector<float> products_;     // [3][kProducts][height][stride]

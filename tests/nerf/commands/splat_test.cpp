@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "nerf/image/image_io.h"
+#include "tests/nerf/commands/run_program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace nerf {
+namespace {
+
+namespace fs = std::filesystem;
+using test::RunNerf;
+using testing::HasSubstr;
+
+// A field of a small generated capture, trained until it has surfaces.
+class SplatCommand : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::ScratchFolder;
+    const auto made =
+        RunNerf("sample " + Path("sample") + " --views 20 --width 64 --height 48 --samples 1");
+    ASSERT_EQ(made.exit_status, 0) << made.output;
+    const auto trained =
+        RunNerf("train " + Path("sample/truth/sparse") + " -o " + Path("run") +
+                " --threads 2 --config fast --set train.steps=150 --effects config");
+    ASSERT_EQ(trained.exit_status, 0) << trained.output;
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static std::string Path(const std::string& name) { return (folder_->path() / name).string(); }
+  static test::ProgramResult Splat(const std::string& flags = "") {
+    return RunNerf("splat " + Path("run") + " --set splats.count=3000 --set splats.steps=150 " +
+                   flags);
+  }
+  static double PsnrWith(const std::string& with) {
+    const auto eval = RunNerf("eval --json " + Path("run") + " --with " + with);
+    EXPECT_EQ(eval.exit_status, 0) << eval.output;
+    return nlohmann::json::parse(eval.output).at("psnr");
+  }
+  static std::string Bytes(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  inline static test::ScratchFolder* folder_ = nullptr;
+};
+
+TEST_F(SplatCommand, MakesGaussiansThatEvalAndRenderDraw) {
+  const auto made = Splat();
+  ASSERT_EQ(made.exit_status, 0) << made.output;
+  EXPECT_THAT(made.output, HasSubstr("fitted 3000 Gaussians in 150 iterations"));
+  EXPECT_THAT(made.output, HasSubstr("the field has"));
+  EXPECT_GT(PsnrWith("splats"), 10);
+  const auto rendered =
+      RunNerf("render " + Path("run") + " --with splats --depth --opacity -o " + Path("views"));
+  ASSERT_EQ(rendered.exit_status, 0) << rendered.output;
+  const Image picture = ReadImage(Path("views/view_000.png"), false);
+  EXPECT_EQ(picture.width, 64);
+  EXPECT_TRUE(fs::exists(Path("views/view_000.depth.exr")));
+}
+
+TEST_F(SplatCommand, TheSameSeedGivesTheSameBits) {
+  ASSERT_EQ(Splat("--threads 1").exit_status, 0);
+  const std::string once = Bytes(Path("run/splats.nerf"));
+  ASSERT_EQ(Splat("--threads 1").exit_status, 0);
+  EXPECT_FALSE(once.empty());
+  EXPECT_TRUE(once == Bytes(Path("run/splats.nerf")));  // not printed where it fails
+}
+
+TEST_F(SplatCommand, WhatCannotBeDoneIsNamed) {
+  fs::remove(Path("run/splats.nerf"));
+  const auto without = RunNerf("render " + Path("run") + " --with splats -o " + Path("none"));
+  EXPECT_EQ(without.exit_status, 2);
+  EXPECT_THAT(without.output, HasSubstr("make Gaussians first: nerf splat"));
+  EXPECT_FALSE(fs::exists(Path("none")));
+  ASSERT_EQ(Splat().exit_status, 0);
+  const auto coarse = RunNerf("render " + Path("run") + " --with splats --quality 0.5");
+  EXPECT_EQ(coarse.exit_status, 2);
+  EXPECT_THAT(coarse.output, HasSubstr("always drawn exactly"));
+  const auto key = Splat("--set splats.cuont=5");
+  EXPECT_EQ(key.exit_status, 2);
+  EXPECT_THAT(key.output, HasSubstr("splats.cuont"));
+  EXPECT_EQ(RunNerf("splat " + Path("nowhere")).exit_status, 2);
+  std::ofstream(Path("run/splats.nerf")) << "damaged";
+  const auto damaged = RunNerf("eval " + Path("run") + " --with splats");
+  EXPECT_EQ(damaged.exit_status, 2);
+  EXPECT_THAT(damaged.output, HasSubstr("splats.nerf"));
+}
+
+}  // namespace
+}  // namespace nerf
