@@ -1,6 +1,9 @@
 #include "nerf/pipeline/gaussian_session.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -9,6 +12,7 @@
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/prepared_scene.h"
 #include "nerf/pipeline/surface_points.h"
+#include "nerf/render/non_finite_error.h"
 #include "nerf/splats/gaussian_fit.h"
 
 namespace nerf {
@@ -111,6 +115,12 @@ GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& w
   FitProgress progress = clock.At(0);
   while (progress.fraction < 1 && !stop) {
     const double loss = fit.Step(progress);
+    if (!std::isfinite(loss)) {
+      throw NonFiniteError(fmt::format(
+          "the loss of iteration {} of the Gaussians is not finite; try smaller rates: --set "
+          "splats.mean_rate={}",
+          fit.Steps(), options.mean_rate / 3));
+    }
     progress = clock.At(fit.Steps());
     listener(GaussiansStepped{fit.Steps(), progress.fraction, loss});
   }

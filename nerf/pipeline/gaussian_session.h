@@ -29,7 +29,8 @@ struct GaussianSummary {
 // field renders and are fitted to its photographs. Poses, exposures, masks and the meaning of alpha
 // are those of the run; where the run simulates no view dependence, the Gaussians have none either.
 // Writes RUN/splats.nerf. Reports events in the calling thread.
-// Throws InputError, also for a run of linear photographs, which Gaussians are not fitted to yet.
+// Throws NonFiniteError where the fit diverges; then nothing is written. Throws InputError, also
+// for a run of linear photographs, which Gaussians are not fitted to yet.
 GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& watch,
                               const std::atomic<bool>& stop, const PipelineListener& listener);
 
