@@ -42,7 +42,7 @@ class ColmapSteps {
   // connected to the others.
   void Map();
   // Matches the pairs that guided matching skipped and maps again. Of more than 300 photographs
-  // only more of the similar ones, and those that are not registered with all that are. Adds its
+  // only more of the similar ones, and those that are not registered with those that are. Adds its
   // models to those of Map.
   void MatchAllAndMap(const std::set<std::string>& registered);
   // Maps again with lower thresholds. Adds its models to those of Map.

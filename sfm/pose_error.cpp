@@ -27,14 +27,13 @@ Eigen::Matrix3d BestRotation(const std::vector<const PosedImage*>& found,
   return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
 }
 
-}  // namespace
-
-PoseErrors ComparePoses(const PosedImages& found, const PosedImages& truth) {
+PoseErrors Compare(const PosedImages& found, const PosedImages& truth,
+                   std::string (*key)(const PosedImage&)) {
   std::map<std::string, const PosedImage*> true_image;
-  for (const PosedImage& image : truth.images) true_image[FileNameOf(image)] = &image;
+  for (const PosedImage& image : truth.images) true_image[key(image)] = &image;
   std::vector<const PosedImage*> a, b;
   for (const PosedImage& image : found.images) {
-    const auto known = true_image.find(FileNameOf(image));
+    const auto known = true_image.find(key(image));
     if (known == true_image.end()) continue;
     a.push_back(&image);
     b.push_back(known->second);
@@ -68,6 +67,16 @@ PoseErrors ComparePoses(const PosedImages& found, const PosedImages& truth) {
   errors.rotation_median = Median(degrees);
   errors.position_median = Median(distances);
   return errors;
+}
+
+}  // namespace
+
+PoseErrors ComparePoses(const PosedImages& found, const PosedImages& truth) {
+  return Compare(found, truth, FileNameOf);
+}
+
+PoseErrors ComparePosesByName(const PosedImages& found, const PosedImages& truth) {
+  return Compare(found, truth, [](const PosedImage& image) { return image.name; });
 }
 
 }  // namespace nerf::sfm

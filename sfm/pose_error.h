@@ -16,5 +16,7 @@ struct PoseErrors {
 // Compares the images of the same file name. Throws InputError naming the truth where fewer than
 // four have one.
 PoseErrors ComparePoses(const PosedImages& found, const PosedImages& truth);
+// The same for images of the same name, folders included.
+PoseErrors ComparePosesByName(const PosedImages& found, const PosedImages& truth);
 
 }  // namespace nerf::sfm

@@ -156,7 +156,7 @@ void JudgeAgreement(const PosedImages& model, std::span<const PosedImages> other
     const auto shared = std::ranges::count_if(
         model.images, [&](const PosedImage& image) { return names.contains(image.name); });
     if (shared < kSharedToCompare) continue;
-    disagreement = std::max(disagreement, ComparePoses(other, model).rotation_median);
+    disagreement = std::max(disagreement, ComparePosesByName(other, model).rotation_median);
   }
   if (disagreement <= kMostDisagreement) return;
   verdict.trust = std::max(verdict.trust, Trust::kDoubtful);

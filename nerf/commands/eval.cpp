@@ -111,6 +111,9 @@ void RunEval(const EvalArguments& arguments) {
   const OpenedRun run = OpenRun(arguments.run);
   const std::shared_ptr<const SceneModel> model = ChosenModel(run, arguments.with, arguments.run);
   run.model->Renderer(arguments.quality);  // checks the quality before a folder is created
+  if (arguments.effects && arguments.with == "splats") {
+    throw InputError("--with splats: --effects measures trainings of the field; leave out one");
+  }
   const fs::path output =
       arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
   MakeOutputFolder(output);

@@ -32,6 +32,10 @@ void RunSplat(SplatArguments& arguments) {
       MakeGaussians(arguments.request, watch, StopOnInterrupt(),
                     [&](const PipelineEvent& event) { display(event); });
   display.Finish();
+  if (summary.steps == 0) {
+    fmt::print("stopped; nothing was written\n");
+    return;
+  }
   fmt::print("{} {} Gaussians in {} iterations, {:.1f} s\n",
              summary.finished ? "fitted" : "stopped, kept", summary.gaussians, summary.steps,
              summary.seconds);
@@ -51,9 +55,10 @@ void AddSplatCommand(CLI::App& app) {
   command->add_option("run", arguments->run, "run folder")->required();
   command
       ->add_option("--time-budget", arguments->request.time_budget,
-                   "end after this time: 90, 30s, 2m, 1h [splats.steps iterations]")
+                   "end the fit after this time: 90, 30s, 2m, 1h [splats.steps iterations]")
       ->transform(
-          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
+          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))
+      ->check(CLI::Range(1.0, 30.0 * 24 * 3600));
   command
       ->add_option("--set", arguments->request.assignments,
                    "override a value: splats.count=100000; repeatable")

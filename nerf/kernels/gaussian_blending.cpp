@@ -68,13 +68,13 @@ HWY_INLINE PixelCentres CentresOfTile(const Tile& tile) {
 
 // The bands that a Gaussian may touch, a bit for each.
 HWY_INLINE std::uint32_t BandsOf(const ProjectedGaussian& g, const Tile& tile) {
-  const float top = g.y - g.radius_y - static_cast<float>(tile.y) - 0.5f;
-  const float bottom = g.y + g.radius_y - static_cast<float>(tile.y) - 0.5f;
-  const int first = std::max(0, static_cast<int>(std::ceil(top))) / kRowsOfVector;
-  const int last_row = std::min(kTileHeight - 1, static_cast<int>(std::floor(bottom)));
-  if (last_row < 0) return 0;
-  const int last = last_row / kRowsOfVector;
-  if (first > last) return 0;
+  const float centre = g.y - static_cast<float>(tile.y) - 0.5f;
+  // Bounded first: a Gaussian may be larger than an int holds.
+  const float top = std::clamp(std::ceil(centre - g.radius_y), 0.0f, 1.0f * kTileHeight);
+  const float bottom = std::clamp(std::floor(centre + g.radius_y), -1.0f, kTileHeight - 1.0f);
+  if (top > bottom) return 0;
+  const int first = static_cast<int>(top) / kRowsOfVector;
+  const int last = static_cast<int>(bottom) / kRowsOfVector;
   return (~0u << first) & (~0u >> (31 - last));
 }
 
@@ -106,13 +106,15 @@ std::int64_t ForwardImpl(const ProjectedGaussian* gaussians, const Tile& tile,
     bool any_ended = false;
     for (int h = 0; h < kAcross; ++h) {
       const V dx = centres.x[h] - Constant(g.x);
-      const V of_x = hn::MulAdd(dx * dx, Constant(g.xx), Constant(g.log2_opacity));
+      const V peak = Constant(g.log2_opacity);
+      const V of_x = hn::MulAdd(dx * dx, Constant(g.xx), peak);
       const V linear = dx * Constant(g.xy);
       for (std::uint32_t rest = bands & alive[h]; rest != 0; rest &= rest - 1) {
         const int band = __builtin_ctz(rest);
         const int at = (band * kAcross + h) * kLanes;
         const V dy = centres.y + Constant(static_cast<float>(band * kRowsOfVector) - g.y);
-        const V log2_alpha = hn::MulAdd(dy, hn::MulAdd(dy, yy, linear), of_x);
+        // Never above the peak: far from the mean of a needle, rounding could bring it there.
+        const V log2_alpha = hn::Min(hn::MulAdd(dy, hn::MulAdd(dy, yy, linear), of_x), peak);
         const V alpha = hn::IfThenElseZero(hn::Gt(log2_alpha, least), Exp2(log2_alpha));
         const V before = hn::Load(d, transmittance + at);
         const V weight = alpha * before;
@@ -194,14 +196,16 @@ HWY_INLINE void BackwardColumn(const ProjectedGaussian& g, const PixelCentres& c
   const V one = Constant(1), stop = Constant(kStopTransmittance), least = Constant(g.least);
   const V red = Constant(g.rgb[0]), green = Constant(g.rgb[1]), blue = Constant(g.rgb[2]);
   const V far = Constant(g.distance), dx = centres.x[h] - Constant(g.x);
-  const V of_x = hn::MulAdd(dx * dx, Constant(g.xx), Constant(g.log2_opacity));
+  const V peak = Constant(g.log2_opacity);
+  const V of_x = hn::MulAdd(dx * dx, Constant(g.xx), peak);
   const V linear = dx * Constant(g.xy), yy = Constant(g.yy);
   V column = hn::Zero(d), column_y = hn::Zero(d);
   for (std::uint32_t rest = bands & pixels.alive[h]; rest != 0; rest &= rest - 1) {
     const int band = __builtin_ctz(rest);
     const int at = (band * kAcross + h) * kLanes;
     const V dy = centres.y + Constant(static_cast<float>(band * kRowsOfVector) - g.y);
-    const V log2_alpha = hn::MulAdd(dy, hn::MulAdd(dy, yy, linear), of_x);
+    // Never above the peak: far from the mean of a needle, rounding could bring it there.
+    const V log2_alpha = hn::Min(hn::MulAdd(dy, hn::MulAdd(dy, yy, linear), of_x), peak);
     const auto counts = hn::Gt(log2_alpha, least);
     if (hn::AllFalse(d, counts)) continue;
     const V alpha = hn::IfThenElseZero(counts, Exp2(log2_alpha));

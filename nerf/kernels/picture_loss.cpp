@@ -125,7 +125,9 @@ double GradientImpl(const std::array<RowsAround, 3>& derivatives, std::span<cons
     const V similar = BlurredAcross(derivatives[0], i) +
                       two * value * BlurredAcross(derivatives[1], i) +
                       truth * BlurredAcross(derivatives[2], i);
-    hn::StoreU(w * difference / root - s * similar, d, gradient.data() + i);
+    const V by_x = w * difference / root - s * similar;
+    hn::StoreU(hn::IfThenElseZero(hn::Gt(hn::LoadU(d, weight.data() + i), hn::Zero(d)), by_x), d,
+               gradient.data() + i);
   }
   return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, total)));
 }

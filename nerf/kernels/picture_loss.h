@@ -34,7 +34,7 @@ using DerivativeRows = std::array<std::span<float>, 3>;
 double SimilarityDerivatives(const std::array<RowsAround, kProducts>& products,
                              std::span<const float> weight, const DerivativeRows& out);
 
-// Third pass: the gradient by the row's x, written.
+// Third pass: the gradient by the row's x, written; 0 where the weight is 0.
 //   derivatives  of the second pass
 //   structural   s
 //   returns      the sum of the first term, weight (1 - s) sqrt(...)

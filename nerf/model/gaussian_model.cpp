@@ -78,12 +78,15 @@ GaussianModel ReadGaussians(const std::filesystem::path& file) {
     const auto stored = checkpoint.tensors.find(kTensor);
     // Before anything is allocated.
     if (order < 0 || order > kernels::kMostHarmonicsOrder || count < 1 ||
-        stored == checkpoint.tensors.end() ||
+        stored == checkpoint.tensors.end() || stored->second.dim() != 3 ||
+        stored->second.scalar_type() != torch::kFloat ||
+        !torch::isfinite(stored->second).all().item<bool>() ||
+        !(meta.at("near").get<double>() > 0 && meta.at("near").get<double>() < 1e6) ||
         stored->second.numel() / kernels::GaussianRows(order) < count ||
         stored->second.numel() / kernels::GaussianRows(order) >=
             count + kernels::kGaussiansInBlock) {
       throw InputError(
-          "{}: the number of Gaussians does not match their parameters; make them "
+          "{}: the Gaussians are damaged, or not as many as it says; make them "
           "again with nerf splat",
           file.string());
     }

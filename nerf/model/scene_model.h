@@ -26,9 +26,9 @@ class SceneModel {
  public:
   virtual ~SceneModel() = default;
 
-  // Pixels outside the lens's field of view, and transparent ones, have the display background
-  // (white if photographs have alpha, else black). Depth is along the ray, in normalized units.
-  // Throws InputError if quality is not in [0, 1].
+  // Transparent pixels have the display background (white if photographs have alpha, else black),
+  // and those outside the lens's field of view have it in pictures of the field. Depth is along the
+  // ray, in normalized units. Throws InputError if quality is not in [0, 1].
   virtual RenderedView Render(const ViewRequest& view) const = 0;
   virtual const Config& GetConfig() const = 0;
   virtual const SceneFacts& Scene() const = 0;

@@ -25,10 +25,20 @@ constexpr double kNearShare = 0.5;
 // The configuration of the run with assignments to its splats.
 Config ConfigOf(const OpenedRun& run, const std::vector<std::string>& assignments) {
   nlohmann::json json = JsonFromConfig(run.model->GetConfig());
-  const Config given = LoadConfig("base", assignments);
-  json["splats"] = JsonFromConfig(given)["splats"];
+  const nlohmann::json given = JsonFromConfig(LoadConfig("base", assignments));
+  for (const std::string& assignment : assignments) {
+    const std::string key = assignment.substr(0, assignment.find('='));
+    if (!key.starts_with("splats.")) {
+      throw InputError("--set {}: nerf splat takes keys of splats; others are those of the run",
+                       assignment);
+    }
+    json["splats"][key.substr(7)] = given["splats"][key.substr(7)];
+  }
   return ConfigFromJson(json, "splats");
 }
+
+// Thrown by listeners where the user asks to stop.
+struct Stopped {};
 
 // Brings the photographs to the mean exposure, by the gains that the run has learned.
 void RemoveExposures(const Model& model, std::vector<View>& views) {
@@ -77,10 +87,8 @@ class FitClock {
   Stopwatch watch_;
 };
 
-}  // namespace
-
-GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& watch,
-                              const std::atomic<bool>& stop, const PipelineListener& listener) {
+GaussianSummary FitToRun(const GaussianRequest& request, const Stopwatch& watch,
+                         const std::atomic<bool>& stop, const PipelineListener& listener) {
   const OpenedRun run = OpenRun(request.run);
   const Config config = ConfigOf(run, request.assignments);
   const SceneFacts& scene = run.model->Scene();
@@ -99,6 +107,7 @@ GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& w
   const SurfacePoints surfaces =
       FindSurfacePoints(*run.model, data.train, options.count, [&](std::size_t done) {
         listener(SurfacesRendered{done, data.train.size()});
+        if (stop) throw Stopped();
       });
   if (surfaces.points.empty()) {
     throw InputError("{}: its views agree on no surface; train it longer", request.run.string());
@@ -124,6 +133,7 @@ GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& w
     progress = clock.At(fit.Steps());
     listener(GaussiansStepped{fit.Steps(), progress.fraction, loss});
   }
+  if (fit.Steps() == 0) throw Stopped();
   const GaussianModel model(config, scene, fit.Cloud(), near, fit.Steps());
   GaussianSummary summary;
   summary.finished = progress.fraction >= 1;
@@ -131,9 +141,21 @@ GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& w
   summary.gaussians = model.Cloud().count;
   summary.seconds = fitting.Seconds();
   WriteGaussians(model, GaussiansPath(request.run));
+  if (stop) return summary;
   summary.psnr = ValidationPsnr(model, run.posed);
   summary.field_psnr = ValidationPsnr(*run.model, run.posed);
   return summary;
+}
+
+}  // namespace
+
+GaussianSummary MakeGaussians(const GaussianRequest& request, const Stopwatch& watch,
+                              const std::atomic<bool>& stop, const PipelineListener& listener) {
+  try {
+    return FitToRun(request, watch, stop, listener);
+  } catch (const Stopped&) {
+    return {};
+  }
 }
 
 }  // namespace nerf

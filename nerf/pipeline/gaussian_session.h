@@ -13,12 +13,15 @@ namespace nerf {
 
 struct GaussianRequest {
   std::filesystem::path run;
-  double time_budget = 0;                // seconds of the whole command; 0: splats.steps iterations
+  // Seconds from the beginning of the command to the end of the fit, before the validation; 0:
+  // splats.steps iterations.
+  double time_budget = 0;
   std::vector<std::string> assignments;  // "splats.key=value"
 };
 
 struct GaussianSummary {
-  bool finished = false;  // false: stopped on request; the Gaussians so far are kept
+  // false: stopped on request; the Gaussians so far are kept, but none of 0 steps.
+  bool finished = false;
   std::int64_t steps = 0;
   std::int64_t gaussians = 0;
   double seconds = 0;

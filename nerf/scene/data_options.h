@@ -24,10 +24,10 @@ struct DataOptions {
            "most verdicts on effects need; without a budget, as long as the training; 0: never");
     option("test_every", o.test_every, "", ZeroOr(AtLeast(2)),
            "hold out images 0, 8, 16, ... by name; 0: none");
-    option(
-        "validation_images", o.validation_images, "", AtLeast(0),
-        "at most; one in sixteen of the training images, but at least 3, is taken out to measure "
-        "progress, at poses that stand for all; 0: none");
+    option("validation_images", o.validation_images, "", AtLeast(0),
+           "at most; one in sixteen of the training images, but at least 3 (2 of fewer than 24), "
+           "is taken out to measure "
+           "progress, at poses that stand for all; 0: none");
     option("memory_mb", o.memory_mb, "MB", AtLeast(1),
            "for pixels; where they do not fit, an even random share is held");
   }

@@ -8,6 +8,7 @@ namespace nerf {
 namespace {
 
 constexpr int kMostSwapRounds = 20;
+constexpr std::size_t kMostCompared = 2000;  // of more cameras, an even subset
 
 // [N,N] between cameras.
 Eigen::MatrixXd Distances(const std::vector<Eigen::Isometry3d>& cameras) {
@@ -73,6 +74,16 @@ std::size_t TypicalOf(const Eigen::MatrixXd& distances, const std::vector<std::s
 std::vector<std::size_t> RepresentativeCameras(
     const std::vector<Eigen::Isometry3d>& world_from_camera, std::size_t count) {
   if (count == 0) return {};
+  if (world_from_camera.size() > kMostCompared) {
+    const std::size_t step = (world_from_camera.size() + kMostCompared - 1) / kMostCompared;
+    std::vector<Eigen::Isometry3d> some;
+    for (std::size_t i = 0; i < world_from_camera.size(); i += step) {
+      some.push_back(world_from_camera[i]);
+    }
+    std::vector<std::size_t> chosen = RepresentativeCameras(some, count);
+    for (std::size_t& index : chosen) index *= step;
+    return chosen;
+  }
   const Eigen::MatrixXd distances = Distances(world_from_camera);
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < count; ++k) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "nerf/base/input_error.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {
@@ -13,8 +14,25 @@ namespace {
 // Beyond the border of the picture the lens is evaluated as far as this times its half diagonal:
 // there are the means of Gaussians that reach into it.
 constexpr double kBeyondBorder = 1.3;
-constexpr int kBorderSamples = 16;  // of each side
+constexpr double kMostFitError = 0.5;  // pixels, at the border and beyond
+constexpr int kBorderSamples = 16;     // of each side
 constexpr double kMostFisheye = 0.99 * std::numbers::pi;
+
+// Of a pixel without direction, outside the image circle: that of the last one on the way there
+// from the principal point.
+Eigen::Vector3d NearestDirection(const Camera& camera, const Eigen::Vector2d& pixel) {
+  if (const auto direction = DirectionFromPixel(camera, pixel)) return *direction;
+  const Eigen::Vector2d centre = PrincipalPoint(camera);
+  Eigen::Vector3d last = Eigen::Vector3d::UnitZ();
+  double inside = 0, outside = 1;
+  for (int i = 0; i < 20; ++i) {
+    const double middle = (inside + outside) / 2;
+    const auto direction = DirectionFromPixel(camera, centre + middle * (pixel - centre));
+    (direction ? inside : outside) = middle;
+    if (direction) last = *direction;
+  }
+  return last;
+}
 
 // The largest |u| and |v|, or for fisheyes the largest angle, of the picture's border on the ideal
 // plane.
@@ -25,13 +43,12 @@ Eigen::Vector2d ExtentOnIdealPlane(const Camera& camera, bool is_fisheye) {
     const double w = camera.width, h = camera.height;
     for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(s * w, 0), Eigen::Vector2d(s * w, h),
                                          Eigen::Vector2d(0, s * h), Eigen::Vector2d(w, s * h)}) {
-      const auto direction = DirectionFromPixel(camera, pixel);
-      if (!direction) continue;
+      const auto direction = NearestDirection(camera, pixel);
       if (is_fisheye) {
-        const double angle = std::atan2(direction->head<2>().norm(), direction->z());
+        const double angle = std::atan2(direction.head<2>().norm(), direction.z());
         extent = extent.cwiseMax(Eigen::Vector2d(angle, angle));
       } else {
-        extent = extent.cwiseMax((direction->head<2>() / direction->z()).cwiseAbs());
+        extent = extent.cwiseMax((direction.head<2>() / direction.z()).cwiseAbs());
       }
     }
   }
@@ -39,7 +56,7 @@ Eigen::Vector2d ExtentOnIdealPlane(const Camera& camera, bool is_fisheye) {
 }
 
 // The factor of a radius by a polynomial of its square, by least squares over [0, extent].
-std::array<float, 5> FitRadial(const LensDistortion& lens, double extent) {
+std::array<float, 5> FitRadial(const LensDistortion& lens, double extent, double focal) {
   constexpr int kSamples = 100;
   Eigen::MatrixXd powers(kSamples, 5);
   Eigen::VectorXd factors(kSamples);
@@ -50,6 +67,13 @@ std::array<float, 5> FitRadial(const LensDistortion& lens, double extent) {
     factors(i) = distorted ? distorted->x() / r : 1;
   }
   const Eigen::VectorXd fitted = powers.colPivHouseholderQr().solve(factors);
+  const double error = (powers * fitted - factors).cwiseAbs().maxCoeff() * extent * focal;
+  if (!(error < kMostFitError)) {
+    throw InputError(
+        "an FOV lens with omega {} is too wide for Gaussians (off by {:.1f} pixels); "
+        "undistort the photographs, or render the field",
+        lens.fov_omega.value_or(0), error);
+  }
   std::array<float, 5> coefficients{};
   for (int k = 0; k < 5; ++k) coefficients[k] = static_cast<float>(fitted[k]);
   return coefficients;
@@ -88,7 +112,7 @@ kernels::GaussianCamera MakeGaussianCamera(const Camera& camera,
   made.most_ideal = {static_cast<float>(extent.x()), static_cast<float>(extent.y())};
   for (int k = 0; k < 5; ++k) made.numerator[k] = static_cast<float>(lens.numerator[k]);
   for (int k = 0; k < 4; ++k) made.denominator[k] = static_cast<float>(lens.denominator[k]);
-  if (lens.fov_omega) made.numerator = FitRadial(lens, extent.norm());
+  if (lens.fov_omega) made.numerator = FitRadial(lens, extent.norm(), FocalLength(camera));
   made.tangential = {static_cast<float>(lens.tangential.x()),
                      static_cast<float>(lens.tangential.y())};
   made.prism = {static_cast<float>(lens.prism.x()), static_cast<float>(lens.prism.y())};

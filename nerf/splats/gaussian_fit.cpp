@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "nerf/base/random.h"
@@ -21,6 +22,7 @@ constexpr std::uint64_t kSplitStream = 0x67617573735f5f33ull;
 constexpr std::uint64_t kBackgroundStream = 0x67617573735f5f34ull;
 // Learning rates are those of a fit of so many iterations, and for others times (this / their
 // number)^power.
+constexpr double kMostPixelsKept = 4e7;  // of all photographs, 25 bytes each
 constexpr double kRatedSteps = 2000, kRatePower = 0.5;
 // A Gaussian becomes two of this size, a standard deviation of its own apart.
 constexpr float kSplitScale = 1 / 1.5f, kSplitDistance = 0.7f;
@@ -39,20 +41,30 @@ GaussianFit::GaussianFit(const std::vector<View>& views, bool has_alpha, Gaussia
     : options_(options),
       has_alpha_(has_alpha),
       seed_(seed),
+      views_(views),
+      near_(near),
       cloud_(Reordered(initial, SpatialOrder(initial))),
       first_moment_(torch::zeros_like(cloud_.parameters)),
       second_moment_(torch::zeros_like(cloud_.parameters)),
       need_(static_cast<std::size_t>(cloud_.parameters.size(0)) * kGaussiansInBlock, 0.0f) {
-  for (const View& view : views) {
-    whole_.push_back(
-        {TargetOf(view), MakeGaussianCamera(view.camera, view.normalized_from_camera, near)});
-    if (options_.half_resolution == 0) continue;
-    half_.push_back(
-        {Halved(whole_.back().target),
-         MakeGaussianCamera(Downscaled(view.camera, 2), view.normalized_from_camera, near)});
+  double pixels = 0;
+  for (const View& view : views) pixels += static_cast<double>(PixelCount(view.camera));
+  if (pixels <= kMostPixelsKept) {
+    for (const View& view : views) {
+      whole_.push_back(PictureOf(view, false));
+      if (options_.half_resolution > 0) half_.push_back(PictureOf(view, true));
+    }
   }
-  turn_.resize(whole_.size());
+  turn_.resize(views.size());
   std::iota(turn_.begin(), turn_.end(), 0u);
+}
+
+GaussianFit::Picture GaussianFit::PictureOf(const View& view, bool is_half) const {
+  is_half = is_half && std::min(view.camera.width, view.camera.height) > 1;
+  const TargetPicture target = TargetOf(view);
+  const Camera camera = is_half ? Downscaled(view.camera, 2) : view.camera;
+  return {is_half ? Halved(target) : target,
+          MakeGaussianCamera(camera, view.normalized_from_camera, near_)};
 }
 
 // Each photograph once in a random order, then again in another.
@@ -65,7 +77,10 @@ const GaussianFit::Picture& GaussianFit::NextPicture(double progress) {
     });
   }
   const std::uint32_t photograph = turn_[step_ % count];
-  return progress < options_.half_resolution ? half_[photograph] : whole_[photograph];
+  const bool is_half = progress < options_.half_resolution;
+  if (!whole_.empty()) return is_half ? half_[photograph] : whole_[photograph];
+  picture_ = PictureOf(views_[photograph], is_half);
+  return picture_;
 }
 
 double GaussianFit::Step(const FitProgress& progress) {
@@ -89,7 +104,7 @@ double GaussianFit::Step(const FitProgress& progress) {
         UpdateBlock(block, gradients, on_screen, groups);
       });
   if (step_ % options_.split_every == 0 && progress.fraction < options_.split_until) Split();
-  return loss;
+  return is_finite_ ? loss : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<GaussianFit::RowGroup> GaussianFit::RowGroups(const FitProgress& progress) const {
@@ -133,8 +148,10 @@ void GaussianFit::UpdateBlock(std::int64_t block, std::span<float> gradients,
   for (const RowGroup& group : groups) {
     const std::size_t at = static_cast<std::size_t>(group.first) * kGaussiansInBlock;
     const std::size_t values = static_cast<std::size_t>(group.count) * kGaussiansInBlock;
-    kernels::AdamStep(group.adam, correction_, {parameters + at, values},
-                      gradients.subspan(at, values), {first + at, values}, {second + at, values});
+    const bool is_finite = kernels::AdamStep(group.adam, correction_, {parameters + at, values},
+                                             gradients.subspan(at, values), {first + at, values},
+                                             {second + at, values});
+    if (!is_finite) is_finite_ = false;
   }
 }
 

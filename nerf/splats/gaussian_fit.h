@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -29,7 +30,7 @@ class GaussianFit {
   GaussianFit(const std::vector<View>& views, bool has_alpha, GaussianCloud initial,
               const SplatOptions& options, double near, std::uint64_t seed);
 
-  // One iteration. Returns the loss.
+  // One iteration. Returns the loss; NaN if that, a gradient or a parameter is not finite.
   double Step(const FitProgress& progress);
 
   const GaussianCloud& Cloud() const { return cloud_; }
@@ -41,6 +42,7 @@ class GaussianFit {
     TargetPicture target;
     kernels::GaussianCamera camera;
   };
+  Picture PictureOf(const View& view, bool is_half) const;
   const Picture& NextPicture(double progress);
   // Rows of parameters that share a learning rate.
   struct RowGroup {
@@ -56,8 +58,11 @@ class GaussianFit {
   SplatOptions options_;
   bool has_alpha_;
   std::uint64_t seed_;
-  std::vector<Picture> whole_, half_;
-  std::vector<std::uint32_t> turn_;  // the order of the photographs
+  const std::vector<View>& views_;
+  double near_;
+  std::vector<Picture> whole_, half_;  // empty where they would need too much memory
+  Picture picture_;                    // then that of this step
+  std::vector<std::uint32_t> turn_;    // the order of the photographs
   GaussianCloud cloud_;
   torch::Tensor first_moment_, second_moment_;  // of Adam, as the parameters
   kernels::AdamBiasCorrection correction_;      // of this step
@@ -66,6 +71,7 @@ class GaussianFit {
   PictureLoss loss_;
   GaussianPicture gradient_;
   std::int64_t step_ = 0;
+  std::atomic<bool> is_finite_ = true;
 };
 
 }  // namespace nerf

@@ -112,9 +112,12 @@ void PictureLoss::Composite(GaussianPicture& drawn, const TargetPicture& target,
     const std::span<float> truth = Rows(truth_, channel, target.height, target.stride).At(y);
     const float* const shown = target.Row(channel, y);
     const float* const opacity = target.Row(TargetPicture::kOpacity, y);
+    const float* const weight = target.Row(TargetPicture::kWeight, y);
     for (int x = 0; x < target.width; ++x) {
       rgb[x] += T[x] * background[channel];
-      truth[x] = shown[x] * opacity[x] + (1 - opacity[x]) * background[channel];
+      const float truth_of = shown[x] * opacity[x] + (1 - opacity[x]) * background[channel];
+      // What is not known is as it is drawn, so that windows that reach there do not learn from it.
+      truth[x] = weight[x] > 0 ? truth_of : rgb[x];
     }
   });
 }

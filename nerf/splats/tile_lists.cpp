@@ -1,9 +1,11 @@
 #include "nerf/splats/tile_lists.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 
+#include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 
 namespace nerf {
@@ -13,14 +15,18 @@ using kernels::kTileHeight;
 using kernels::kTileWidth;
 using kernels::ProjectedGaussian;
 
-constexpr std::int64_t kChunks = 16;  // whatever the number of threads
+constexpr float kFarOutside = 1e8f;               // pixels
+constexpr std::int64_t kMostEntries = 150000000;  // 2 GB, with their gradients 8 GB
+constexpr std::int64_t kChunks = 16;              // whatever the number of threads
 
 // Calls use(tile) for the tiles that the ellipse of a Gaussian touches, row after row. Where it is
 // cut it is q = xx dx^2 + xy dx dy + yy dy^2 = least - log2_opacity, negative.
 template <class Use>
 void ForEachTile(const ProjectedGaussian& g, int columns, int rows, const Use& use) {
+  // Not beyond what an int holds, however large the Gaussian is.
   const auto tile_of = [](float position, int size) {
-    return static_cast<int>(std::floor(position / static_cast<float>(size)));
+    const float bounded = std::clamp(position, -kFarOutside, kFarOutside);
+    return static_cast<int>(std::floor(bounded / static_cast<float>(size)));
   };
   // The first and last pixel centre inside.
   const int top = std::max(0, tile_of(g.y - g.radius_y - 0.5f, kTileHeight));
@@ -47,8 +53,9 @@ void ForEachTile(const ProjectedGaussian& g, int columns, int rows, const Use& u
     const float x1 = g.x + (-b * at_right + std::sqrt(root_right)) / a;
     const float x0 = g.x + (-b * at_left - std::sqrt(root_left)) / a;
     // Half a pixel more, against rounding.
-    const int first = std::max(left, tile_of(x0 - 1.0f, kTileWidth));
-    const int last = std::min(right, tile_of(x1, kTileWidth));
+    // Where rounding leaves no number, the whole row.
+    const int first = x1 >= x0 ? std::max(left, tile_of(x0 - 1.0f, kTileWidth)) : left;
+    const int last = x1 >= x0 ? std::min(right, tile_of(x1, kTileWidth)) : right;
     for (int column = first; column <= last; ++column) use(row * columns + column);
   }
 }
@@ -62,12 +69,14 @@ void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int hei
   tiles_of_chunk_.resize(kChunks);
   begin_of_chunk_.resize(kChunks);
   const auto first_of = [&](std::int64_t chunk) { return count * chunk / kChunks; };
+  std::atomic<std::int64_t> entries = 0;
   ParallelForEach(kChunks, [&](std::int64_t chunk) {
     std::vector<std::uint32_t>& tiles = tiles_of_chunk_[chunk];
     std::vector<std::uint32_t>& counts = begin_of_chunk_[chunk];
     tiles.clear();
     counts.assign(static_cast<std::size_t>(Count()), 0);
     for (std::int64_t i = first_of(chunk); i < first_of(chunk + 1); ++i) {
+      if (entries > kMostEntries) return;
       const std::size_t before = tiles.size();
       ForEachTile(gaussians[i], columns_, rows_, [&](int tile) {
         tiles.push_back(static_cast<std::uint32_t>(tile));
@@ -75,8 +84,15 @@ void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int hei
       });
       gaussians[i].first_slot = static_cast<std::uint32_t>(before);
       gaussians[i].tiles = static_cast<std::uint32_t>(tiles.size() - before);
+      entries += gaussians[i].tiles;
     }
   });
+  if (entries > kMostEntries) {
+    throw InputError(
+        "{} Gaussians cover more than {} million tiles of a picture of {}x{}; use fewer, or a "
+        "smaller picture",
+        count, kMostEntries / 1000000, width, height);
+  }
   begin_.resize(static_cast<std::size_t>(Count()) + 1);
   std::uint32_t sum = 0;
   for (int tile = 0; tile < Count(); ++tile) {

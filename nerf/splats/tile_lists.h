@@ -12,7 +12,8 @@ namespace nerf {
 // Which Gaussians touch which tile of a picture, front to back.
 class TileLists {
  public:
-  // The lists do not depend on the number of threads.
+  // The lists do not depend on the number of threads. Throws InputError where they would be too
+  // long.
   //   gaussians  front to back; first_slot and tiles are written
   void Build(std::span<kernels::ProjectedGaussian> gaussians, int width, int height);
 

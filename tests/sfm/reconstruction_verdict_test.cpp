@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <Eigen/Geometry>
 
@@ -129,7 +130,11 @@ TEST_F(Verdicts, AModelThatOthersContradictIsDoubtful) {
 }
 
 TEST_F(Verdicts, AModelThatOthersConfirmIsGood) {
-  // In another frame and unit.
+  // In another frame and unit; two folders with the same file names.
+  for (std::size_t i = 0; i < model_.images.size(); ++i) {
+    model_.images[i].name = fmt::format("{}/{}.jpg", i % 2, i / 2);
+    model_.images[i].path = model_.images[i].name;
+  }
   PosedImages part = model_;
   part.images.resize(10);
   const Eigen::Isometry3d moved(Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized()));

@@ -55,7 +55,9 @@ TEST_F(SplatCommand, MakesGaussiansThatEvalAndRenderDraw) {
   ASSERT_EQ(made.exit_status, 0) << made.output;
   EXPECT_THAT(made.output, HasSubstr("fitted 3000 Gaussians in 150 iterations"));
   EXPECT_THAT(made.output, HasSubstr("the field has"));
-  EXPECT_GT(PsnrWith("splats"), 10);
+  const double fitted = PsnrWith("splats");
+  ASSERT_EQ(Splat("--set splats.steps=1").exit_status, 0);
+  EXPECT_GT(fitted, PsnrWith("splats") + 1);
   const auto rendered =
       RunNerf("render " + Path("run") + " --with splats --depth --opacity -o " + Path("views"));
   ASSERT_EQ(rendered.exit_status, 0) << rendered.output;
@@ -82,6 +84,12 @@ TEST_F(SplatCommand, WhatCannotBeDoneIsNamed) {
   const auto coarse = RunNerf("render " + Path("run") + " --with splats --quality 0.5");
   EXPECT_EQ(coarse.exit_status, 2);
   EXPECT_THAT(coarse.output, HasSubstr("always drawn exactly"));
+  const auto effects = RunNerf("eval " + Path("run") + " --with splats --effects");
+  EXPECT_EQ(effects.exit_status, 2);
+  EXPECT_THAT(effects.output, HasSubstr("--effects"));
+  const auto other = Splat("--set train.seed=7");
+  EXPECT_EQ(other.exit_status, 2);
+  EXPECT_THAT(other.output, HasSubstr("keys of splats"));
   const auto key = Splat("--set splats.cuont=5");
   EXPECT_EQ(key.exit_status, 2);
   EXPECT_THAT(key.output, HasSubstr("splats.cuont"));

@@ -2,24 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "nerf/pipeline/prepared_scene.h"
 #include "nerf/synthetic/sample_folder.h"
-#include "nerf/train/step_statistics.h"
 #include "nerf/train/validation.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_training.h"
 
 namespace nerf {
 namespace {
-
-// The PSNR of the mean squared error of all views, which have the same number of pixels.
-double PooledPsnr(const Evaluation& evaluation) {
-  double sum = 0;
-  for (const ViewScore& score : evaluation.scores) sum += std::pow(10, -score.psnr / 10);
-  return PsnrFromMse(sum / static_cast<double>(evaluation.scores.size()));
-}
 
 // Trainings and trials measure a sample of pixels with Validation, because whole views would take
 // longer than the steps between two measurements. Both must measure the same.
@@ -46,8 +36,10 @@ TEST(Evaluation, OfWholeViewsAgreesWithTheSampleOfPixelsThatTrialsMeasure) {
   const auto snapshot = ModelSnapshot::Copy(model, 150);
 
   const auto whole = [&](bool fit_exposure) {
-    return PooledPsnr(Evaluate(*snapshot, scene.posed, ImagesOf(scene.posed, Split::kValidation),
-                               {1, fit_exposure, {}}));
+    return Evaluate(*snapshot, scene.posed, ImagesOf(scene.posed, Split::kValidation),
+                    {1, fit_exposure, {}})
+        .Mean()
+        .psnr;
   };
   for (const bool fit_exposure : {false, true}) {
     EXPECT_NEAR(validation.Psnr(model, fit_exposure), whole(fit_exposure), 0.3);
