@@ -17,7 +17,8 @@ using kernels::ProjectedGaussian;
 
 constexpr float kFarOutside = 1e8f;               // pixels
 constexpr std::int64_t kMostEntries = 150000000;  // 2 GB, with their gradients 8 GB
-constexpr std::int64_t kChunks = 16;              // whatever the number of threads
+constexpr std::int64_t kCountedAtOnce = 1024;
+constexpr std::int64_t kChunks = 16;  // whatever the number of threads
 
 // Calls use(tile) for the tiles that the ellipse of a Gaussian touches, row after row. Where it is
 // cut it is q = xx dx^2 + xy dx dy + yy dy^2 = least - log2_opacity, negative.
@@ -73,10 +74,16 @@ void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int hei
   ParallelForEach(kChunks, [&](std::int64_t chunk) {
     std::vector<std::uint32_t>& tiles = tiles_of_chunk_[chunk];
     std::vector<std::uint32_t>& counts = begin_of_chunk_[chunk];
+    std::size_t counted = 0;
     tiles.clear();
     counts.assign(static_cast<std::size_t>(Count()), 0);
     for (std::int64_t i = first_of(chunk); i < first_of(chunk + 1); ++i) {
-      if (entries > kMostEntries) return;
+      // Rarely, since threads that count in one place wait for each other.
+      if (i % kCountedAtOnce == 0) {
+        entries += static_cast<std::int64_t>(tiles.size() - counted);
+        counted = tiles.size();
+        if (entries > kMostEntries) return;
+      }
       const std::size_t before = tiles.size();
       ForEachTile(gaussians[i], columns_, rows_, [&](int tile) {
         tiles.push_back(static_cast<std::uint32_t>(tile));
@@ -84,8 +91,8 @@ void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int hei
       });
       gaussians[i].first_slot = static_cast<std::uint32_t>(before);
       gaussians[i].tiles = static_cast<std::uint32_t>(tiles.size() - before);
-      entries += gaussians[i].tiles;
     }
+    entries += static_cast<std::int64_t>(tiles.size() - counted);
   });
   if (entries > kMostEntries) {
     throw InputError(
