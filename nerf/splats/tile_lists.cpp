@@ -20,6 +20,11 @@ constexpr std::int64_t kMostEntries = 150000000;  // 2 GB, with their gradients 
 constexpr std::int64_t kCountedAtOnce = 1024;
 constexpr std::int64_t kChunks = 16;  // whatever the number of threads
 
+// The first Gaussian of a chunk.
+std::int64_t FirstOf(std::int64_t chunk, std::span<const ProjectedGaussian> gaussians) {
+  return static_cast<std::int64_t>(gaussians.size()) * chunk / kChunks;
+}
+
 // Calls use(tile) for the tiles that the ellipse of a Gaussian touches, row after row. Where it is
 // cut it is q = xx dx^2 + xy dx dy + yy dy^2 = least - log2_opacity, negative.
 template <class Use>
@@ -66,10 +71,21 @@ void ForEachTile(const ProjectedGaussian& g, int columns, int rows, const Use& u
 void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int height) {
   columns_ = (width + kTileWidth - 1) / kTileWidth;
   rows_ = (height + kTileHeight - 1) / kTileHeight;
-  const auto count = static_cast<std::int64_t>(gaussians.size());
+  if (!FindTiles(gaussians)) {
+    throw InputError(
+        "{} Gaussians cover more than {} million tiles of a picture of {}x{}; use fewer, or a "
+        "smaller picture",
+        gaussians.size(), kMostEntries / 1000000, width, height);
+  }
+  SumCounts();
+  FillEntries(gaussians);
+}
+
+// Finds the tiles of each Gaussian, and how many Gaussians of a chunk each tile has. False if they
+// are too many.
+bool TileLists::FindTiles(std::span<ProjectedGaussian> gaussians) {
   tiles_of_chunk_.resize(kChunks);
   begin_of_chunk_.resize(kChunks);
-  const auto first_of = [&](std::int64_t chunk) { return count * chunk / kChunks; };
   std::atomic<std::int64_t> entries = 0;
   ParallelForEach(kChunks, [&](std::int64_t chunk) {
     std::vector<std::uint32_t>& tiles = tiles_of_chunk_[chunk];
@@ -77,7 +93,7 @@ void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int hei
     std::size_t counted = 0;
     tiles.clear();
     counts.assign(static_cast<std::size_t>(Count()), 0);
-    for (std::int64_t i = first_of(chunk); i < first_of(chunk + 1); ++i) {
+    for (std::int64_t i = FirstOf(chunk, gaussians); i < FirstOf(chunk + 1, gaussians); ++i) {
       // Rarely, since threads that count in one place wait for each other.
       if (i % kCountedAtOnce == 0) {
         entries += static_cast<std::int64_t>(tiles.size() - counted);
@@ -94,12 +110,11 @@ void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int hei
     }
     entries += static_cast<std::int64_t>(tiles.size() - counted);
   });
-  if (entries > kMostEntries) {
-    throw InputError(
-        "{} Gaussians cover more than {} million tiles of a picture of {}x{}; use fewer, or a "
-        "smaller picture",
-        count, kMostEntries / 1000000, width, height);
-  }
+  return entries <= kMostEntries;
+}
+
+// From how many entries each chunk has in a tile to where the first of them stands.
+void TileLists::SumCounts() {
   begin_.resize(static_cast<std::size_t>(Count()) + 1);
   std::uint32_t sum = 0;
   for (int tile = 0; tile < Count(); ++tile) {
@@ -111,7 +126,10 @@ void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int hei
     }
   }
   begin_.back() = sum;
-  entries_.resize(sum);
+}
+
+void TileLists::FillEntries(std::span<ProjectedGaussian> gaussians) {
+  entries_.resize(begin_.back());
   std::vector<std::uint32_t> first_slot(kChunks, 0);
   for (std::int64_t chunk = 1; chunk < kChunks; ++chunk) {
     first_slot[chunk] =
@@ -119,7 +137,7 @@ void TileLists::Build(std::span<ProjectedGaussian> gaussians, int width, int hei
   }
   ParallelForEach(kChunks, [&](std::int64_t chunk) {
     std::vector<std::uint32_t>& next = begin_of_chunk_[chunk];
-    for (std::int64_t i = first_of(chunk); i < first_of(chunk + 1); ++i) {
+    for (std::int64_t i = FirstOf(chunk, gaussians); i < FirstOf(chunk + 1, gaussians); ++i) {
       ProjectedGaussian& g = gaussians[i];
       const std::uint32_t* const tiles = tiles_of_chunk_[chunk].data() + g.first_slot;
       g.first_slot += first_slot[chunk];

@@ -25,6 +25,10 @@ class TileLists {
   kernels::Tile At(int tile) const;
 
  private:
+  bool FindTiles(std::span<kernels::ProjectedGaussian> gaussians);
+  void SumCounts();
+  void FillEntries(std::span<kernels::ProjectedGaussian> gaussians);
+
   int columns_ = 0, rows_ = 0;
   std::vector<std::vector<std::uint32_t>> tiles_of_chunk_;  // of its Gaussians, one after another
   std::vector<std::vector<std::uint32_t>> begin_of_chunk_;  // [chunk][tile]
