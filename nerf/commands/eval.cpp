@@ -32,7 +32,7 @@ struct EvalArguments {
   std::string run;
   std::string output;
   std::string split = "test";
-  std::string with = "field";
+  std::string with = "auto";
   double quality = 1;
   bool fit_exposure = false;
   std::optional<int> downscale;
@@ -109,7 +109,9 @@ Evaluation EvaluateViews(const OpenedRun& run, const SceneModel& model,
 void RunEval(const EvalArguments& arguments) {
   UseThreads(arguments.threads);
   const OpenedRun run = OpenRun(arguments.run);
-  const std::shared_ptr<const SceneModel> model = ChosenModel(run, arguments.with, arguments.run);
+  const bool is_field = arguments.with == "auto" && (arguments.effects || arguments.quality != 1);
+  const bool uses_splats = !is_field && UsesSplats(arguments.with, arguments.run);
+  const std::shared_ptr<const SceneModel> model = ChosenModel(run, uses_splats, arguments.run);
   run.model->Renderer(arguments.quality);  // checks the quality before a folder is created
   if (arguments.effects && arguments.with == "splats") {
     throw InputError("--with splats: --effects measures trainings of the field; leave out one");
@@ -129,7 +131,7 @@ void RunEval(const EvalArguments& arguments) {
        {"quality", arguments.quality},
        {"exposure_fitted", evaluation.exposure_fitted},
        {"step", model->Step()},
-       {"with", arguments.with},
+       {"with", uses_splats ? "splats" : "field"},
        {"training_seconds", run.training_seconds},
        {"left_out", evaluation.unreadable.size()}});
   // File names may not be valid UTF-8.
@@ -140,6 +142,7 @@ void RunEval(const EvalArguments& arguments) {
     return;
   }
   PrintEvaluation(evaluation);
+  if (uses_splats) fmt::print("of the Gaussians; --with field evaluates the field\n");
   if (evaluation.exposure_fitted) {
     fmt::print("each view rendered at the exposure fitted to its photograph\n");
   }

@@ -35,7 +35,7 @@ struct RenderArguments {
   std::string run;
   std::string output;
   ShotOptions shots;
-  std::string with = "field";
+  std::string with = "auto";
   std::optional<double> fps;
   std::string format = "png";
   bool depth = false;
@@ -73,14 +73,34 @@ void Expose(const std::array<float, 3>& gains, const Eigen::Vector3f& background
              view.rgb.pixels);
 }
 
+// Whether a run has Gaussians that are better than its field where a frame may take so long.
+bool SplatsAreBetterThan(const MeasuredQuality& field, double seconds, const fs::path& run) {
+  const std::optional<ComparedPsnr> reached = ReadRepresentation(run).reached;
+  if (!reached || !fs::exists(GaussiansPath(run))) return false;
+  if (field.seconds > seconds) return true;
+  // Errors of the exact picture and of what is left out of it, as if they were independent.
+  const double error = std::pow(10, -reached->field / 10) + std::pow(10, -field.psnr / 10);
+  return reached->splats > -10 * std::log10(error);
+}
+
 // The requested quality, or the highest whose frames take at most the requested time. Prints its
 // cost and error, measured on the first view.
-double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArguments& arguments) {
-  if (!arguments.seconds_per_frame && arguments.quality == 1) return 1;
+double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArguments& arguments,
+                     bool& uses_splats) {
+  if (uses_splats || (!arguments.seconds_per_frame && arguments.quality == 1)) return 1;
   const QualityProbe probe(*run.model, {shot.camera, shot.world_from_camera});
   const MeasuredQuality measured = arguments.seconds_per_frame
                                        ? probe.Choose(*arguments.seconds_per_frame)
                                        : probe.Measure(arguments.quality);
+  if (arguments.seconds_per_frame && arguments.with == "auto" &&
+      SplatsAreBetterThan(measured, *arguments.seconds_per_frame, arguments.run)) {
+    uses_splats = true;
+    fmt::print(
+        "the Gaussians of the run are nearer to its photographs than the field at {} a "
+        "frame (quality {:.2f})\n",
+        FormatSeconds(*arguments.seconds_per_frame), measured.quality);
+    return 1;
+  }
   const std::string loss = std::isinf(measured.psnr)
                                ? "the exact picture"
                                : fmt::format("{:.1f} dB from the exact picture", measured.psnr);
@@ -116,14 +136,15 @@ void CheckArguments(const RenderArguments& arguments) {
 }
 
 // Renders all views; with --preview each one coarse first.
-void RenderShots(const OpenedRun& run, const SceneModel& model, const ShotList& list,
+void RenderShots(const OpenedRun& run, bool uses_splats, const ShotList& list,
                  const RenderArguments& arguments, const fs::path& output) {
   const SceneFacts& scene = run.model->Scene();
   std::optional<std::array<float, 3>> gains;
   if (!arguments.exposure_of.empty()) {
     gains = GainsOf(run.model->GetModel(), arguments.exposure_of);
   }
-  const double quality = ChooseQuality(run, list.shots.front(), arguments);
+  const double quality = ChooseQuality(run, list.shots.front(), arguments, uses_splats);
+  const auto model = ChosenModel(run, uses_splats, arguments.run);
   const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
   std::int64_t pixels = 0, done = 0;
   for (const Shot& shot : list.shots) {
@@ -140,8 +161,8 @@ void RenderShots(const OpenedRun& run, const SceneModel& model, const ShotList& 
                         background, scene.encoding));
     }
     RenderedView view =
-        model.Render({shot.camera, shot.world_from_camera, quality,
-                      [&](std::int64_t of_view) { progress.Update(done + of_view, shot.name); }});
+        model->Render({shot.camera, shot.world_from_camera, quality,
+                       [&](std::int64_t of_view) { progress.Update(done + of_view, shot.name); }});
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
     if (gains) Expose(*gains, background, view);
     WriteShot(view, scene, arguments, output / shot.name);
@@ -164,7 +185,10 @@ void RunRender(const RenderArguments& arguments) {
   UseThreads(arguments.threads);
   CheckArguments(arguments);
   const OpenedRun run = OpenRun(arguments.run);
-  const std::shared_ptr<const SceneModel> model = ChosenModel(run, arguments.with, arguments.run);
+  // The ways to save time are those of the field.
+  const bool is_field = arguments.with == "auto" && (arguments.preview || arguments.quality != 1);
+  const bool uses_splats = !is_field && UsesSplats(arguments.with, arguments.run);
+  ChosenModel(run, uses_splats, arguments.run);  // throws before a folder is created
   if (!arguments.exposure_of.empty()) GainsOf(run.model->GetModel(), arguments.exposure_of);
   const ShotList list = ChooseShots(run, arguments.shots, arguments.run);
   const fs::path output = arguments.output.empty()
@@ -177,7 +201,7 @@ void RunRender(const RenderArguments& arguments) {
                           .translation(),
                       shot.name);
   }
-  RenderShots(run, *model, list, arguments, output);
+  RenderShots(run, uses_splats, list, arguments, output);
   fmt::print("{} views in {}\n", list.shots.size(), output.string());
   WriteFilm(list, arguments, output);
 }

@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "nerf/base/input_error.h"
 #include "nerf/base/interrupt.h"
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
@@ -24,23 +26,25 @@ struct SplatArguments {
 };
 
 void RunSplat(SplatArguments& arguments) {
+  if (arguments.request.resume && !arguments.request.assignments.empty()) {
+    throw InputError("--resume continues with the options of the fit; omit --set");
+  }
   const Stopwatch watch;
   UseThreads(arguments.threads);
   arguments.request.run = arguments.run;
   TrainingDisplay display;
-  const GaussianSummary summary =
+  const std::optional<GaussianSession> session =
       MakeGaussians(arguments.request, watch, StopOnInterrupt(),
                     [&](const PipelineEvent& event) { display(event); });
-  display.Finish();
-  if (summary.steps == 0) {
+  if (!session) {
+    display.Finish();
     fmt::print("stopped; nothing was written\n");
     return;
   }
-  fmt::print("{} {} Gaussians in {} iterations, {:.1f} s\n",
-             summary.finished ? "fitted" : "stopped, kept", summary.gaussians, summary.steps,
-             summary.seconds);
-  if (summary.psnr > 0) {
-    fmt::print("validation {:.2f} dB; the field has {:.2f} dB\n", summary.psnr, summary.field_psnr);
+  display(GaussiansEnded{session->fit, session->reached});
+  if (!session->fit.finished) {
+    fmt::print("continue with: nerf splat --resume {}\n", arguments.run);
+    return;
   }
   fmt::print("{}\nnext: nerf render {} --with splats\n", GaussiansPath(arguments.run).string(),
              arguments.run);
@@ -64,6 +68,8 @@ void AddSplatCommand(CLI::App& app) {
                    "override a value: splats.count=100000; repeatable")
       ->allow_extra_args(false)
       ->take_all();
+  command->add_flag("--resume", arguments->request.resume,
+                    "continue a fit that was interrupted, with its options");
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "They begin at the surfaces that the field renders, and are fitted to the photographs of "

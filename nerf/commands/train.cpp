@@ -29,6 +29,7 @@ struct TrainArguments {
   bool preset_is_given = false;
   std::vector<std::string> assignments;
   std::string effects = "auto";
+  std::string representation;
   std::optional<int> downscale;
   std::optional<int> frames;
   std::optional<double> time_budget;  // seconds
@@ -54,6 +55,9 @@ fs::path RunFolder(const TrainArguments& arguments) {
 // The assignments by --set and by the flags that are short for it.
 std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
   std::vector<std::string> assignments = arguments.assignments;
+  if (!arguments.representation.empty()) {
+    assignments.push_back("train.representation=" + arguments.representation);
+  }
   if (arguments.downscale) {
     assignments.push_back(fmt::format("data.downscale={}", *arguments.downscale));
   }
@@ -77,7 +81,7 @@ TrainingRequest RequestOf(const TrainArguments& arguments) {
     if (!request.assignments.empty() || arguments.preset_is_given || arguments.effects != "auto") {
       throw InputError(
           "--resume continues with the run's configuration; omit --config, --set, --effects, "
-          "--downscale, --frames, --time-budget and --target-psnr");
+          "--representation, --downscale, --frames, --time-budget and --target-psnr");
     }
     return request;
   }
@@ -129,6 +133,11 @@ void AddTrainCommand(CLI::App& app) {
                    "auto: decide by inspection and trials; config: as configured; "
                    "+exposure,-view_dependence: these on and off, the others auto")
       ->capture_default_str();
+  command
+      ->add_option("--representation", arguments->representation,
+                   "field: the neural field alone; splats: Gaussians as well, which begin at its "
+                   "surfaces; auto: what a short trial says [auto]")
+      ->check(CLI::IsMember({"auto", "field", "splats"}));
   command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
   command->add_option("--frames", arguments->frames,
                       "of a film: how many to use [three a second, 40 to 150]");

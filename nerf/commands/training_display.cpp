@@ -188,7 +188,35 @@ void TrainingDisplay::Show(const GaussiansStepped& event) {
   if (!progress_) progress_.emplace("fitting Gaussians", kParts);
   if (!ProgressLine::IsTerminal()) return;
   progress_->Update(std::llround(event.fraction * kParts),
-                    fmt::format("iteration {}, loss {:.4f}", event.step, event.loss));
+                    fmt::format("iteration {}, loss {:.4f}{}", event.step, event.loss,
+                                event.psnr > 0 ? fmt::format("  {:.2f} dB", event.psnr) : ""));
+}
+
+void TrainingDisplay::Show(const RepresentationDecided& event) {
+  progress_.reset();
+  if (event.tried) {
+    Print("a trial of Gaussians: {:.2f} dB where the field has {:.2f}; {}\n", event.tried->splats,
+          event.tried->field,
+          event.makes_splats ? "they follow the field" : "the field goes on alone");
+  } else if (!event.makes_splats) {
+    Print("no Gaussians: {}\n", event.why_not);
+  }
+}
+
+void TrainingDisplay::Show(const GaussiansEnded& event) {
+  progress_.reset();
+  const GaussianSummary& fit = event.fit;
+  Print("{} {} Gaussians in {} iterations, {:.1f} s\n", fit.finished ? "fitted" : "stopped, kept",
+        fit.gaussians, fit.steps, fit.seconds);
+  if (!event.reached) return;
+  const auto [field, splats] = *event.reached;
+  const auto last = fit.curve.SecondsOfLast(kGain);
+  Print("validation: Gaussians {:.2f} dB, the field {:.2f} dB{}; {} better by {:.2f} dB\n", splats,
+        field,
+        last
+            ? fmt::format(" (the last {} dB of the Gaussians cost {})", kGain, FormatSeconds(*last))
+            : "",
+        splats > field ? "Gaussians are" : "the field is", std::abs(splats - field));
 }
 
 void TrainingDisplay::Show(const TrainingEnded& event) {

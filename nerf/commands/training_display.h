@@ -38,6 +38,8 @@ class TrainingDisplay {
   void Show(const TrainerEvent& event);
   void Show(const SurfacesRendered& event);
   void Show(const GaussiansStepped& event);
+  void Show(const RepresentationDecided& event);
+  void Show(const GaussiansEnded& event);
   void Show(const StepTaken& event);
 
   TrainOptions train_;

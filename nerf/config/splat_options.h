@@ -8,9 +8,11 @@ namespace nerf {
 struct SplatOptions {
   int count = 50000;
   int steps = 4000;
+  double share = 0.8;
   int harmonics_order = 3;
   double structural = 0.3;
-  double half_resolution = 0.3;
+  double quarter_resolution = 0.3;
+  double half_resolution = 0.8;
   double split_until = 0.7;
   int split_every = 50;
   double split_share = 0.05;
@@ -29,11 +31,15 @@ struct SplatOptions {
   static void Options(Self& o, Visitor&& option) {
     option("count", o.count, "", Between(16, 1 << 24), "Gaussians");
     option("steps", o.steps, "iterations", Between(1, 1 << 24), "without a time budget");
+    option("share", o.share, "of a time budget", Between(0.1, 0.9),
+           "in which nerf train fits Gaussians, after the field");
     option("harmonics_order", o.harmonics_order, "", Between(0, 3),
            "of the spherical harmonics by which colour depends on direction");
     option("structural", o.structural, "", Between(0, 1), "share of 1 - SSIM in the loss");
+    option("quarter_resolution", o.quarter_resolution, "of the training", Between(0, 1),
+           "at first, at a quarter of the resolution");
     option("half_resolution", o.half_resolution, "of the training", Between(0, 1),
-           "at first, at half the resolution");
+           "until then, at half the resolution");
     option("split_until", o.split_until, "of the training", Between(0, 1),
            "until then invisible Gaussians split others");
     option("split_every", o.split_every, "iterations", Between(1, 1 << 20), "between two splits");

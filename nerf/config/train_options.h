@@ -21,6 +21,17 @@ struct EnumNames<kernels::Precision> {
       {kernels::Precision::kFloat, "float"}, {kernels::Precision::kBfloat16, "bfloat16"}};
 };
 
+// What a training makes of a scene: the neural field alone, or Gaussians as well, which begin at
+// the surfaces of the field. kAuto: a trial decides.
+enum class Representation { kAuto, kField, kSplats };
+template <>
+struct EnumNames<Representation> {
+  static constexpr std::pair<Representation, std::string_view> kNames[] = {
+      {Representation::kAuto, "auto"},
+      {Representation::kField, "field"},
+      {Representation::kSplats, "splats"}};
+};
+
 enum class LossKind { kHuber, kMse };
 template <>
 struct EnumNames<LossKind> {
@@ -91,6 +102,7 @@ struct ScheduleOptions {
 double LearningRateFactor(const ScheduleOptions& schedule, std::int64_t step, double progress);
 
 struct TrainOptions {
+  Representation representation = Representation::kAuto;
   EngineKind engine = EngineKind::kFused;
   kernels::Precision precision = kernels::Precision::kFloat;
   std::int64_t steps = 5000;
@@ -108,6 +120,8 @@ struct TrainOptions {
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
+    option("representation", o.representation,
+           "the field alone, Gaussians as well, or what a trial on validation photographs says");
     option("engine", o.engine,
            "fused kernels, or LibTorch, the definition they are tested against");
     option("precision", o.precision,

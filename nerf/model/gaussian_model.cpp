@@ -11,8 +11,40 @@
 namespace nerf {
 namespace {
 
-constexpr float kLeastOpacity = 1e-3f;   // below it depth is undefined
-constexpr char kTensor[] = "gaussians";  // in the file
+constexpr float kLeastOpacity = 1e-3f;  // below it depth is undefined
+// Tensors of the file.
+constexpr char kGaussians[] = "gaussians", kFirstMoment[] = "first_moment",
+               kSecondMoment[] = "second_moment", kNeed[] = "need";
+
+GaussianModel ModelOf(const Checkpoint& checkpoint, const std::filesystem::path& file) {
+  try {
+    const nlohmann::json& meta = checkpoint.meta;
+    const auto order = meta.at("harmonics_order").get<int>();
+    const auto count = meta.at("gaussians").get<std::int64_t>();
+    const auto stored = checkpoint.tensors.find(kGaussians);
+    // Before anything is allocated.
+    if (order < 0 || order > kernels::kMostHarmonicsOrder || count < 1 ||
+        stored == checkpoint.tensors.end() || stored->second.dim() != 3 ||
+        stored->second.scalar_type() != torch::kFloat ||
+        !torch::isfinite(stored->second).all().item<bool>() ||
+        !(meta.at("near").get<double>() > 0 && meta.at("near").get<double>() < 1e6) ||
+        stored->second.numel() / kernels::GaussianRows(order) < count ||
+        stored->second.numel() / kernels::GaussianRows(order) >=
+            count + kernels::kGaussiansInBlock) {
+      throw InputError(
+          "{}: the Gaussians are damaged, or not as many as it says; make them "
+          "again with nerf splat",
+          file.string());
+    }
+    GaussianCloud cloud(count, order);
+    CopyTensor(checkpoint.tensors, kGaussians, cloud.parameters);
+    return {ConfigFromJson(meta.at("config"), file.string()), SceneFromJson(meta.at("scene")),
+            std::move(cloud), meta.at("near").get<double>(), meta.at("step").get<std::int64_t>()};
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError("{}: is no file of Gaussians ({}); make them again with nerf splat",
+                     file.string(), error.what());
+  }
+}
 
 }  // namespace
 
@@ -57,7 +89,8 @@ RenderedView GaussianModel::Render(const ViewRequest& view) const {
   return rendered;
 }
 
-void WriteGaussians(const GaussianModel& model, const std::filesystem::path& file) {
+void WriteGaussians(const GaussianModel& model, const std::filesystem::path& file,
+                    const InterruptedFit* fit) {
   Checkpoint checkpoint;
   checkpoint.meta = {{"config", JsonFromConfig(model.GetConfig())},
                      {"scene", JsonFromScene(model.Scene())},
@@ -65,39 +98,38 @@ void WriteGaussians(const GaussianModel& model, const std::filesystem::path& fil
                      {"gaussians", model.Cloud().count},
                      {"harmonics_order", model.Cloud().order},
                      {"near", model.Near()}};
-  checkpoint.tensors[kTensor] = model.Cloud().parameters;
+  checkpoint.tensors[kGaussians] = model.Cloud().parameters;
+  if (fit != nullptr) {
+    checkpoint.meta["fit_seconds"] = fit->seconds;
+    checkpoint.tensors[kFirstMoment] = fit->state.first_moment;
+    checkpoint.tensors[kSecondMoment] = fit->state.second_moment;
+    checkpoint.tensors[kNeed] = fit->state.need;
+  }
   WriteCheckpoint(file, checkpoint);
 }
 
 GaussianModel ReadGaussians(const std::filesystem::path& file) {
+  return ModelOf(ReadCheckpoint(file), file);
+}
+
+std::optional<InterruptedFit> ReadInterruptedFit(const std::filesystem::path& file) {
   const Checkpoint checkpoint = ReadCheckpoint(file);
-  try {
-    const nlohmann::json& meta = checkpoint.meta;
-    const auto order = meta.at("harmonics_order").get<int>();
-    const auto count = meta.at("gaussians").get<std::int64_t>();
-    const auto stored = checkpoint.tensors.find(kTensor);
-    // Before anything is allocated.
-    if (order < 0 || order > kernels::kMostHarmonicsOrder || count < 1 ||
-        stored == checkpoint.tensors.end() || stored->second.dim() != 3 ||
-        stored->second.scalar_type() != torch::kFloat ||
-        !torch::isfinite(stored->second).all().item<bool>() ||
-        !(meta.at("near").get<double>() > 0 && meta.at("near").get<double>() < 1e6) ||
-        stored->second.numel() / kernels::GaussianRows(order) < count ||
-        stored->second.numel() / kernels::GaussianRows(order) >=
-            count + kernels::kGaussiansInBlock) {
-      throw InputError(
-          "{}: the Gaussians are damaged, or not as many as it says; make them "
-          "again with nerf splat",
-          file.string());
-    }
-    GaussianCloud cloud(count, order);
-    CopyTensor(checkpoint.tensors, kTensor, cloud.parameters);
-    return {ConfigFromJson(meta.at("config"), file.string()), SceneFromJson(meta.at("scene")),
-            std::move(cloud), meta.at("near").get<double>(), meta.at("step").get<std::int64_t>()};
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError("{}: is no file of Gaussians ({}); make them again with nerf splat",
-                     file.string(), error.what());
+  const GaussianModel model = ModelOf(checkpoint, file);
+  const auto seconds = checkpoint.meta.find("fit_seconds");
+  if (seconds == checkpoint.meta.end()) return std::nullopt;
+  if (!seconds->is_number() || !(seconds->get<double>() >= 0) || model.Step() < 0) {
+    throw InputError("{}: fit_seconds or step is out of range; make the Gaussians again",
+                     file.string());
   }
+  const GaussianCloud& cloud = model.Cloud();
+  InterruptedFit fit = {
+      {cloud, torch::zeros_like(cloud.parameters), torch::zeros_like(cloud.parameters),
+       torch::zeros({cloud.parameters.size(0) * kernels::kGaussiansInBlock}), model.Step()},
+      seconds->get<double>()};
+  CopyTensor(checkpoint.tensors, kFirstMoment, fit.state.first_moment);
+  CopyTensor(checkpoint.tensors, kSecondMoment, fit.state.second_moment);
+  CopyTensor(checkpoint.tensors, kNeed, fit.state.need);
+  return fit;
 }
 
 }  // namespace nerf

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "nerf/model/checkpoint.h"
 #include "nerf/model/scene_model.h"
 #include "nerf/splats/gaussian_cloud.h"
+#include "nerf/splats/gaussian_fit.h"
 
 namespace nerf {
 
@@ -31,9 +33,19 @@ class GaussianModel : public SceneModel {
   std::int64_t step_;
 };
 
+// A fit that has not ended.
+struct InterruptedFit {
+  GaussianFitState state;
+  double seconds = 0;  // spent on it so far
+};
+
 // Writes a model to a file, and reads it back. Throws InputError naming a file that is missing,
 // damaged, or none of Gaussians.
-void WriteGaussians(const GaussianModel& model, const std::filesystem::path& file);
+//   fit  where it has not ended; its cloud is that of the model
+void WriteGaussians(const GaussianModel& model, const std::filesystem::path& file,
+                    const InterruptedFit* fit = nullptr);
 GaussianModel ReadGaussians(const std::filesystem::path& file);
+// The fit that made a file, to go on with; nullopt where it has ended.
+std::optional<InterruptedFit> ReadInterruptedFit(const std::filesystem::path& file);
 
 }  // namespace nerf

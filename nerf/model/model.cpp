@@ -17,8 +17,6 @@
 namespace nerf {
 namespace {
 
-using nlohmann::json;
-
 constexpr char kOccupancyName[] = "occupancy";
 
 // A malicious configuration could request tables of any size, so the sizes of the stored tensors
@@ -148,7 +146,7 @@ Model ModelFromCheckpoint(const Checkpoint& checkpoint) {
                torch::from_blob(density.data(), {static_cast<std::int64_t>(density.size())}));
     model.grid->Refresh();
     return model;
-  } catch (const json::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw InputError("checkpoint: {}; train again", error.what());
   }
 }

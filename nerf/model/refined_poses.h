@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <string>
+
 #include "nerf/model/model.h"
 #include "nerf/scene/posed_images.h"
 
@@ -10,5 +13,9 @@ namespace nerf {
 // share. Focal lengths are scaled as for a lens without distortion. Returns `posed` unchanged if
 // the model has no pose refinement.
 PosedImages RefinedPoses(const Model& model, PosedImages posed);
+
+// The same for one view: its pose if it was trained on, and its focal length.
+void RefineView(const Model& model, const std::string& name, std::int64_t lens,
+                Eigen::Isometry3d& normalized_from_camera, Camera& camera);
 
 }  // namespace nerf

@@ -20,6 +20,7 @@ fs::path ColmapPath(const fs::path& run) { return run / "colmap"; }
 fs::path PointsPath(const fs::path& run) { return run / "points"; }
 fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
 fs::path GaussiansPath(const fs::path& run) { return run / "splats.nerf"; }
+fs::path RepresentationPath(const fs::path& run) { return run / "representation.json"; }
 
 std::shared_ptr<const GaussianModel> OpenGaussians(const fs::path& run) {
   if (!fs::exists(GaussiansPath(run))) {

@@ -16,7 +16,8 @@ namespace nerf {
 //   metrics.jsonl            one line per validation
 //   frames/                  the frames of a film
 //   colmap/                  COLMAP's files, if poses were found from photographs
-//   splats.nerf              Gaussians, if nerf splat made them
+//   splats.nerf              Gaussians, if training or nerf splat made them
+//   representation.json      which of the two is better, and how that was decided
 //   points/                  the same, if sparse points were found for poses that were given
 //   picture.png              a photograph and its rendering, at the end of training
 //   refined_transforms.json  refined poses, with pose_refinement
@@ -32,6 +33,7 @@ std::filesystem::path ColmapPath(const std::filesystem::path& run);
 std::filesystem::path PointsPath(const std::filesystem::path& run);
 std::filesystem::path SparsePath(const std::filesystem::path& run);
 std::filesystem::path GaussiansPath(const std::filesystem::path& run);
+std::filesystem::path RepresentationPath(const std::filesystem::path& run);
 
 // A trained run, for rendering and evaluation.
 struct OpenedRun {

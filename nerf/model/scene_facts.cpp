@@ -2,8 +2,6 @@
 
 namespace nerf {
 
-using nlohmann::json;
-
 SceneFacts FactsOf(const Dataset& data, const SceneNormalization& normalized_from_world) {
   SceneFacts facts = {data.encoding, data.has_alpha, normalized_from_world, {}, {}, {}};
   for (const View& view : data.train) {
@@ -14,12 +12,12 @@ SceneFacts FactsOf(const Dataset& data, const SceneNormalization& normalized_fro
   return facts;
 }
 
-json JsonFromScene(const SceneFacts& scene) {
+nlohmann::json JsonFromScene(const SceneFacts& scene) {
   const SceneNormalization& n = scene.normalized_from_world;
-  json rotation = json::array(), translation = json::array();
+  nlohmann::json rotation = nlohmann::json::array(), translation = nlohmann::json::array();
   for (int i = 0; i < 9; ++i) rotation.push_back(n.rotation(i / 3, i % 3));
   for (int i = 0; i < 3; ++i) translation.push_back(n.translation[i]);
-  json places = json::array();
+  nlohmann::json places = nlohmann::json::array();
   for (const CameraPlace& p : scene.places) {
     places.push_back({{"centre", {p.centre.x(), p.centre.y(), p.centre.z()}},
                       {"axis", {p.axis.x(), p.axis.y(), p.axis.z()}},
@@ -34,12 +32,12 @@ json JsonFromScene(const SceneFacts& scene) {
           {"places", places}};
 }
 
-SceneFacts SceneFromJson(const json& scene) {
+SceneFacts SceneFromJson(const nlohmann::json& scene) {
   SceneFacts facts;
   facts.encoding = scene.at("encoding") == "srgb" ? ColorEncoding::kSrgb : ColorEncoding::kLinear;
   facts.has_alpha = scene.at("has_alpha");
   facts.photographs = scene.value("photographs", std::vector<std::string>());
-  for (const json& place : scene.value("places", json::array())) {
+  for (const nlohmann::json& place : scene.value("places", nlohmann::json::array())) {
     CameraPlace p;
     for (int i = 0; i < 3; ++i) p.centre[i] = place.at("centre").at(i);
     for (int i = 0; i < 3; ++i) p.axis[i] = place.at("axis").at(i);

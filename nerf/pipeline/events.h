@@ -13,9 +13,11 @@
 #include "nerf/config/config.h"
 #include "nerf/effects/inspection.h"
 #include "nerf/field/pose_refinement.h"
+#include "nerf/model/representation_record.h"
 #include "nerf/model/snapshot.h"
 #include "nerf/scene/data_plan.h"
 #include "nerf/scene/dataset.h"
+#include "nerf/train/quality_curve.h"
 #include "nerf/train/trainer.h"
 #include "sfm/colmap_runner.h"
 #include "sfm/film.h"
@@ -108,13 +110,34 @@ struct GaussiansStepped {
   std::int64_t step = 0;
   double fraction = 0;  // of the fit
   double loss = 0;
+  double psnr = 0;  // dB, the last validation; 0: none yet
+};
+// Whether training makes Gaussians.
+struct RepresentationDecided {
+  bool makes_splats = false;
+  std::optional<ComparedPsnr> tried;
+  std::string why_not;  // where there was no trial
+};
+struct GaussianSummary {
+  bool finished = false;  // false: stopped on request, and can be resumed
+  std::int64_t steps = 0;
+  std::int64_t gaussians = 0;
+  double seconds = 0;  // of the fit, with what was spent on it before
+  double psnr = 0;     // dB, on validation photographs; 0: there are none
+  bool reached_target = false;
+  QualityCurve curve;
+};
+struct GaussiansEnded {
+  GaussianSummary fit;
+  std::optional<ComparedPsnr> reached;
 };
 
 using PipelineEvent =
     std::variant<Warning, WaitEstimated, FilmRead, PosesFound, PointsFound, ResolutionChosen,
                  InspectionProgress, CaptureInspected, DataPlanned, VerdictReached, EffectsTried,
                  EffectsUndecided, BudgetPlanned, TrainingBegan, TrainerEvent, PosesRefined,
-                 TrainingEnded, SurfacesRendered, GaussiansStepped>;
+                 TrainingEnded, SurfacesRendered, GaussiansStepped, RepresentationDecided,
+                 GaussiansEnded>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // A listener that ignores all events.

@@ -90,15 +90,15 @@ std::vector<ColoredPoint> OneInEachVoxel(const std::vector<ColoredPoint>& points
 
 }  // namespace
 
-SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<View>& views,
+SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<TargetView>& views,
                                 std::int64_t wanted,
                                 const std::function<void(std::size_t)>& progress) {
   double pixels = 0;
-  for (const View& view : views) pixels += static_cast<double>(PixelCount(view.camera));
+  for (const TargetView& view : views) pixels += static_cast<double>(PixelCount(view.camera));
   const double reduction = std::sqrt(pixels / (kPixelsForPoint * static_cast<double>(wanted)));
   const SceneNormalization& frame = model.Scene().normalized_from_world;
   std::vector<DepthView> rendered;
-  for (const View& view : views) {
+  for (const TargetView& view : views) {
     const int most = std::max(1, std::min(view.camera.width, view.camera.height) / 16);
     const int factor = std::clamp(static_cast<int>(std::lround(reduction)), 1, most);
     const Camera camera = Downscaled(view.camera, factor);

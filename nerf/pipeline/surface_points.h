@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "nerf/model/scene_model.h"
-#include "nerf/scene/view.h"
 #include "nerf/splats/initial_gaussians.h"
+#include "nerf/splats/target_pictures.h"
 
 namespace nerf {
 
@@ -20,7 +20,7 @@ struct SurfacePoints {
 // of a size that leaves about as many as wanted.
 //   views     poses and cameras; rendered at a resolution that gives several pixels for each point
 //   progress  called with the number of views done
-SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<View>& views,
+SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<TargetView>& views,
                                 std::int64_t wanted,
                                 const std::function<void(std::size_t)>& progress);
 

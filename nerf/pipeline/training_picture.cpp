@@ -6,7 +6,6 @@
 
 #include "nerf/image/image_io.h"
 #include "nerf/model/evaluation.h"
-#include "nerf/model/refined_poses.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/output/contact_sheet.h"
 
@@ -14,27 +13,24 @@ namespace nerf {
 namespace {
 
 constexpr int kLongestSide = 640, kShortestSide = 16;  // pixels
-constexpr double kQuality = 0.5;
 
 }  // namespace
 
-std::optional<std::filesystem::path> WriteTrainingPicture(const Model& model,
+std::optional<std::filesystem::path> WriteTrainingPicture(const SceneModel& model, double quality,
                                                           const PosedImages& posed,
                                                           const std::filesystem::path& run) {
-  const PosedImages refined = RefinedPoses(model, posed);
-  const auto held_out = std::ranges::find(refined.images, Split::kTest, &PosedImage::split);
-  const PosedImage& image = held_out == refined.images.end() ? refined.images.front() : *held_out;
-  const Camera& camera = refined.cameras[image.camera];
-  const int trained = model.config.data.downscale;
+  const auto held_out = std::ranges::find(posed.images, Split::kTest, &PosedImage::split);
+  const PosedImage& image = held_out == posed.images.end() ? posed.images.front() : *held_out;
+  const Camera& camera = posed.cameras[image.camera];
+  const int trained = model.GetConfig().data.downscale;
   const int longest = std::max(camera.width, camera.height);
   const int shortest = std::min(camera.width, camera.height);
   const int downscale = std::max(
       trained, std::min((longest + kLongestSide - 1) / kLongestSide, shortest / kShortestSide));
   if (shortest / downscale < kShortestSide) return std::nullopt;
-  const auto snapshot = ModelSnapshot::Copy(model, 0);
   std::vector<ContactSheetRow> rows;
-  Evaluate(*snapshot, refined, {&image},
-           {kQuality, false, downscale},
+  Evaluate(model, posed, {&image},
+           {quality, false, downscale},
            [&](const EvaluatedView& view) {
              rows.push_back({fmt::format("{}  {:.2f} dB", image.name, view.score->psnr),
                              *view.truth, *view.rendering});

@@ -16,6 +16,7 @@
 #include "nerf/model/refined_poses.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/budget_plan.h"
+#include "nerf/pipeline/representation_training.h"
 #include "nerf/pipeline/training_picture.h"
 #include "nerf/pipeline/training_resolution.h"
 #include "sfm/colmap_estimate.h"
@@ -149,6 +150,8 @@ void TrainingSession::PrepareCapture() {
         CaptureInspected{&scene_.inspection, decisions_.Requested(), scene_.inspection_seconds});
   }
   WriteConfig();  // first, because it marks the folder as a run folder
+  RemoveAll(RepresentationPath(request_.run));  // of a run that was never saved
+  RemoveAll(GaussiansPath(request_.run));
   sfm::WriteTransformsJson(scene_.posed, PosesPath(request_.run));
   // Read back, so that a resumed run has the same poses bit for bit.
   posed_ = sfm::ReadTransformsJson(PosesPath(request_.run));
@@ -199,15 +202,25 @@ void TrainingSession::PlanTimeBudget() {
 
 TrainSummary TrainingSession::Train(const std::atomic<bool>& stop) {
   listener_(TrainingBegan{config_.train, trainer_->Snapshots()});
-  const TrainSummary summary =
-      trainer_->Run(stop, [this](const TrainerEvent& event) { listener_(event); });
+  const RepresentationsTrained trained =
+      TrainRepresentations(*trainer_, data_, request_.run, stop, listener_);
   ReportRefinedPoses();
   std::optional<fs::path> picture;
-  if (summary.finished) {
-    picture = WriteTrainingPicture(trainer_->GetModel(), posed_, request_.run);
-  }
+  if (trained.finished) picture = WritePicture(trained.record.Best());
+  TrainSummary summary = trained.field;
+  summary.finished = trained.finished;
   listener_(TrainingEnded{summary, config_.train, request_.run, picture});
   return summary;
+}
+
+std::optional<fs::path> TrainingSession::WritePicture(Representation best) const {
+  constexpr double kFieldQuality = 0.5;  // of rendering
+  const Model& field = trainer_->GetModel();
+  const PosedImages refined = RefinedPoses(field, posed_);
+  if (best == Representation::kSplats) {
+    return WriteTrainingPicture(*OpenGaussians(request_.run), 1, refined, request_.run);
+  }
+  return WriteTrainingPicture(*ModelSnapshot::Copy(field, 0), kFieldQuality, refined, request_.run);
 }
 
 TrainSummary TrainingSession::Run(const std::atomic<bool>& stop) {

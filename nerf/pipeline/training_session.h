@@ -52,6 +52,7 @@ class TrainingSession {
   void DecideEffects();  // runs trials for inconclusive effects
   void PlanTimeBudget();
   TrainSummary Train(const std::atomic<bool>& stop);
+  std::optional<std::filesystem::path> WritePicture(Representation best) const;
   void EstimateWait() const;
   void ChooseResolution();
   Config ConfigWithDecisions(const std::string& preset) const;

@@ -91,6 +91,7 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
   batch.rays.spread.resize(rays);
   batch.rgb.resize(3 * rays);
   batch.photograph.resize(rays);
+  batch.pixel.resize(rays);
   if (errors_) batch.cell.resize(rays);
   if (depth_share_ > 0) batch.distance.resize(rays);
   // A pixel without a ray is drawn again, so often that only a lens without valid pixels fails.
@@ -112,6 +113,7 @@ TargetBatch PixelSampler::Sample(std::int64_t rays, std::uint64_t seed, std::uin
                                      static_cast<double>(pixel / view.camera.width) + 0.5);
         if (!SetRay(batch.rays, r, view.camera, view.normalized_from_camera, centre)) continue;
         batch.photograph[r] = static_cast<std::int64_t>(v);
+        batch.pixel[r] = pixel;
         if (depth_share_ > 0) batch.distance[r] = distance;
         if (errors_) batch.cell[r] = errors_->CellOf({v, pixel});
         const Eigen::half* rgba = &view.rgba[4 * stored];

@@ -16,6 +16,7 @@ struct TargetBatch {
   RayBatch rays;
   std::vector<float> rgb;  // [R,3] composited on the ray's background where the photo has alpha
   std::vector<std::int64_t> photograph;  // [R] which of the views
+  std::vector<std::int64_t> pixel;       // [R] y * width + x
   std::vector<std::int64_t> cell;        // [R] of the error map; empty where there is none
   // [R] how far each ray sees, normalized units, 0 where that is not known; empty: nowhere.
   std::vector<float> distance;

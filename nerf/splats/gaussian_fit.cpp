@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
+#include "nerf/base/parallel.h"
 #include "nerf/base/random.h"
 #include "nerf/kernels/adam.h"
 #include "nerf/scene/camera.h"
@@ -36,50 +38,63 @@ float RandomNormal(std::uint64_t seed, std::uint64_t stream, std::uint64_t index
 
 }  // namespace
 
-GaussianFit::GaussianFit(const std::vector<View>& views, bool has_alpha, GaussianCloud initial,
+int HalvingsAt(const SplatOptions& options, double fraction) {
+  if (fraction < options.quarter_resolution) return 2;
+  return fraction < options.half_resolution ? 1 : 0;
+}
+
+GaussianFitState BeginFit(const GaussianCloud& initial) {
+  GaussianCloud cloud = Reordered(initial, SpatialOrder(initial));
+  const torch::Tensor& values = cloud.parameters;
+  torch::Tensor need = torch::zeros({values.size(0) * kGaussiansInBlock});
+  return {cloud, torch::zeros_like(values), torch::zeros_like(values), need, 0};
+}
+
+GaussianFit::GaussianFit(std::vector<TargetView> views, bool has_alpha, GaussianFitState begin,
                          const SplatOptions& options, double near, std::uint64_t seed)
     : options_(options),
       has_alpha_(has_alpha),
       seed_(seed),
-      views_(views),
+      views_(std::move(views)),
       near_(near),
-      cloud_(Reordered(initial, SpatialOrder(initial))),
-      first_moment_(torch::zeros_like(cloud_.parameters)),
-      second_moment_(torch::zeros_like(cloud_.parameters)),
-      need_(static_cast<std::size_t>(cloud_.parameters.size(0)) * kGaussiansInBlock, 0.0f) {
+      state_(std::move(begin)) {
   double pixels = 0;
-  for (const View& view : views) pixels += static_cast<double>(PixelCount(view.camera));
+  for (const TargetView& view : views_) pixels += static_cast<double>(PixelCount(view.camera));
   if (pixels <= kMostPixelsKept) {
-    for (const View& view : views) {
-      whole_.push_back(PictureOf(view, false));
-      if (options_.half_resolution > 0) half_.push_back(PictureOf(view, true));
+    for (int halvings = 0; halvings < kResolutions; ++halvings) {
+      if (halvings > HalvingsAt(options_, 0)) break;
+      pictures_[halvings].resize(views_.size());
+      ParallelForEach(static_cast<std::int64_t>(views_.size()), [&](std::int64_t i) {
+        pictures_[halvings][i] = PictureOf(views_[i], halvings);
+      });
     }
   }
-  turn_.resize(views.size());
+  turn_.resize(views_.size());
   std::iota(turn_.begin(), turn_.end(), 0u);
 }
 
-GaussianFit::Picture GaussianFit::PictureOf(const View& view, bool is_half) const {
-  is_half = is_half && std::min(view.camera.width, view.camera.height) > 1;
-  const TargetPicture target = TargetOf(view);
-  const Camera camera = is_half ? Downscaled(view.camera, 2) : view.camera;
-  return {is_half ? Halved(target) : target,
-          MakeGaussianCamera(camera, view.normalized_from_camera, near_)};
+GaussianFit::Picture GaussianFit::PictureOf(const TargetView& view, int halvings) const {
+  while (halvings > 0 && std::min(view.camera.width, view.camera.height) >> halvings < 1) {
+    --halvings;
+  }
+  const TargetView reduced = Reduced(view, halvings);
+  return {TargetOf(reduced),
+          MakeGaussianCamera(reduced.camera, view.normalized_from_camera, near_)};
 }
 
 // Each photograph once in a random order, then again in another.
 const GaussianFit::Picture& GaussianFit::NextPicture(double progress) {
   const auto count = static_cast<std::int64_t>(turn_.size());
-  if (step_ % count == 0) {
-    const auto round = static_cast<std::uint64_t>(step_ / count);
+  if (const std::int64_t round = state_.step / count; round != round_) {
+    round_ = round;
     std::ranges::sort(turn_, {}, [&](std::uint32_t i) {
-      return RandomBits(seed_, kTurnStream, round * turn_.size() + i);
+      return RandomBits(seed_, kTurnStream, static_cast<std::uint64_t>(round) * turn_.size() + i);
     });
   }
-  const std::uint32_t photograph = turn_[step_ % count];
-  const bool is_half = progress < options_.half_resolution;
-  if (!whole_.empty()) return is_half ? half_[photograph] : whole_[photograph];
-  picture_ = PictureOf(views_[photograph], is_half);
+  const std::uint32_t photograph = turn_[state_.step % count];
+  const int halvings = HalvingsAt(options_, progress);
+  if (!pictures_[0].empty()) return pictures_[halvings][photograph];
+  picture_ = PictureOf(views_[photograph], halvings);
   return picture_;
 }
 
@@ -89,21 +104,21 @@ double GaussianFit::Step(const FitProgress& progress) {
   if (has_alpha_) {
     for (int c = 0; c < 3; ++c) {
       background[c] =
-          RandomFloat(seed_, kBackgroundStream, static_cast<std::uint64_t>(3 * step_ + c));
+          RandomFloat(seed_, kBackgroundStream, static_cast<std::uint64_t>(3 * state_.step + c));
     }
   }
-  GaussianPicture& drawn = renderer_.Draw(picture.camera, cloud_.Parameters());
+  GaussianPicture& drawn = renderer_.Draw(picture.camera, state_.cloud.Parameters());
   const double loss =
       loss_.Evaluate(drawn, picture.target, background, options_.structural, gradient_);
-  ++step_;
+  ++state_.step;
   const std::vector<RowGroup> groups = RowGroups(progress);
-  correction_ = kernels::BiasCorrection(groups.front().adam, step_);
+  correction_ = kernels::BiasCorrection(groups.front().adam, state_.step);
   renderer_.Backward(
-      picture.camera, cloud_.Parameters(), gradient_, false,
+      picture.camera, state_.cloud.Parameters(), gradient_, false,
       [&](std::int64_t block, std::span<float> gradients, std::span<const float> on_screen) {
         UpdateBlock(block, gradients, on_screen, groups);
       });
-  if (step_ % options_.split_every == 0 && progress.fraction < options_.split_until) Split();
+  if (state_.step % options_.split_every == 0 && progress.fraction < options_.split_until) Split();
   return is_finite_ ? loss : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -124,9 +139,9 @@ std::vector<GaussianFit::RowGroup> GaussianFit::RowGroups(const FitProgress& pro
       group(kernels::kRotationRow, 4, options_.rotation_rate * decay),
       group(kernels::kOpacityRow, 1, options_.opacity_rate * decay),
       group(kernels::kColorRow, 3, options_.color_rate * decay)};
-  if (cloud_.order > 0) {
+  if (state_.cloud.order > 0) {
     groups.push_back(group(kernels::kColorRow + 3,
-                           kernels::GaussianRows(cloud_.order) - kernels::kColorRow - 3,
+                           kernels::GaussianRows(state_.cloud.order) - kernels::kColorRow - 3,
                            options_.harmonics_rate * decay));
   }
   return groups;
@@ -136,11 +151,12 @@ void GaussianFit::UpdateBlock(std::int64_t block, std::span<float> gradients,
                               std::span<const float> on_screen, std::span<const RowGroup> groups) {
   const std::size_t size = gradients.size();
   const std::size_t begin = static_cast<std::size_t>(block) * size;
-  float* const parameters = cloud_.parameters.data_ptr<float>() + begin;
-  float* const first = first_moment_.data_ptr<float>() + begin;
-  float* const second = second_moment_.data_ptr<float>() + begin;
+  float* const parameters = state_.cloud.parameters.data_ptr<float>() + begin;
+  float* const first = state_.first_moment.data_ptr<float>() + begin;
+  float* const second = state_.second_moment.data_ptr<float>() + begin;
+  float* const need = state_.need.data_ptr<float>();
   for (int l = 0; l < kGaussiansInBlock; ++l) {
-    need_[block * kGaussiansInBlock + l] += on_screen[l];
+    need[block * kGaussiansInBlock + l] += on_screen[l];
     const std::size_t at = kernels::kOpacityRow * kGaussiansInBlock + l;
     const float o = 1 / (1 + std::exp(-parameters[at]));
     gradients[at] += static_cast<float>(options_.opacity_penalty) * o * (1 - o);
@@ -160,58 +176,59 @@ void GaussianFit::Split() {
   std::vector<double> total;  // running sum of the need of visible ones
   const auto least =
       static_cast<float>(std::log(options_.least_opacity / (1 - options_.least_opacity)));
+  const float* const need = state_.need.data_ptr<float>();
   double sum = 0;
-  for (std::int64_t i = 0; i < cloud_.count; ++i) {
-    const bool is_visible = cloud_.At(i, kernels::kOpacityRow) >= least;
+  for (std::int64_t i = 0; i < state_.cloud.count; ++i) {
+    const bool is_visible = state_.cloud.At(i, kernels::kOpacityRow) >= least;
     if (!is_visible) invisible.push_back(i);
-    sum += is_visible ? static_cast<double>(need_[i]) : 0.0;
+    sum += is_visible ? static_cast<double>(need[i]) : 0.0;
     total.push_back(sum);
   }
-  const auto round = static_cast<std::uint64_t>(step_);
+  const auto round = static_cast<std::uint64_t>(state_.step);
   std::ranges::sort(invisible, {}, [&](std::int64_t i) {
     return RandomBits(seed_ ^ round, kSplitStream, static_cast<std::uint64_t>(i));
   });
   const auto most =
-      static_cast<std::size_t>(options_.split_share * static_cast<double>(cloud_.count));
+      static_cast<std::size_t>(options_.split_share * static_cast<double>(state_.cloud.count));
   if (invisible.size() > most) invisible.resize(most);
   if (sum > 0) {
     for (const std::int64_t to : invisible) {
       const double drawn = sum * static_cast<double>(RandomFloat(seed_ ^ round, kSplitStream + 1,
                                                                  static_cast<std::uint64_t>(to)));
       const auto from = std::ranges::upper_bound(total, drawn) - total.begin();
-      if (from < cloud_.count) SplitInto(from, to);
+      if (from < state_.cloud.count) SplitInto(from, to);
     }
   }
-  std::ranges::fill(need_, 0.0f);
+  state_.need.zero_();
 }
 
 // Both are smaller than the one before, and apart by a random vector of its distribution.
 void GaussianFit::SplitInto(std::int64_t from, std::int64_t to) {
-  const auto quaternion = [&](int k) { return cloud_.At(from, kernels::kRotationRow + k); };
+  const auto quaternion = [&](int k) { return state_.cloud.At(from, kernels::kRotationRow + k); };
   const Eigen::Matrix3f axes =
       Eigen::Quaternionf(quaternion(0), quaternion(1), quaternion(2), quaternion(3))
           .normalized()
           .toRotationMatrix();
   Eigen::Vector3f along;
   for (int k = 0; k < 3; ++k) {
-    along[k] = RandomNormal(seed_ ^ static_cast<std::uint64_t>(step_), kSplitStream + 2,
+    along[k] = RandomNormal(seed_ ^ static_cast<std::uint64_t>(state_.step), kSplitStream + 2,
                             static_cast<std::uint64_t>(3 * to + k)) *
-               std::exp(cloud_.At(from, kernels::kLogScaleRow + k));
+               std::exp(state_.cloud.At(from, kernels::kLogScaleRow + k));
   }
   const Eigen::Vector3f offset = kSplitDistance * (axes * along);
-  float* const first = first_moment_.data_ptr<float>();
-  float* const second = second_moment_.data_ptr<float>();
-  for (int row = 0; row < kernels::GaussianRows(cloud_.order); ++row) {
-    float value = cloud_.At(from, row);
+  float* const first = state_.first_moment.data_ptr<float>();
+  float* const second = state_.second_moment.data_ptr<float>();
+  for (int row = 0; row < kernels::GaussianRows(state_.cloud.order); ++row) {
+    float value = state_.cloud.At(from, row);
     if (row >= kernels::kLogScaleRow && row < kernels::kRotationRow) value += std::log(kSplitScale);
-    cloud_.At(from, row) = value;
-    cloud_.At(to, row) = value;
-    first[cloud_.Offset(from, row)] = first[cloud_.Offset(to, row)] = 0;
-    second[cloud_.Offset(to, row)] = second[cloud_.Offset(from, row)];
+    state_.cloud.At(from, row) = value;
+    state_.cloud.At(to, row) = value;
+    first[state_.cloud.Offset(from, row)] = first[state_.cloud.Offset(to, row)] = 0;
+    second[state_.cloud.Offset(to, row)] = second[state_.cloud.Offset(from, row)];
   }
   for (int k = 0; k < 3; ++k) {
-    cloud_.At(from, kernels::kMeanRow + k) -= offset[k];
-    cloud_.At(to, kernels::kMeanRow + k) += offset[k];
+    state_.cloud.At(from, kernels::kMeanRow + k) -= offset[k];
+    state_.cloud.At(to, kernels::kMeanRow + k) += offset[k];
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "nerf/scene/view.h"
 #include "nerf/splats/gaussian_cloud.h"
 #include "nerf/splats/picture_loss.h"
+#include "nerf/splats/target_pictures.h"
 
 namespace nerf {
 
@@ -18,23 +20,38 @@ struct FitProgress {
   double steps = 0;     // iterations of the whole fit; of a fit by time, about
 };
 
+// All that a fit needs to go on, bit for bit.
+struct GaussianFitState {
+  GaussianCloud cloud;
+  torch::Tensor first_moment, second_moment;  // of Adam, as the parameters
+  torch::Tensor need;                         // [blocks * 16] gradient on the screen since a split
+  std::int64_t step = 0;
+};
+// The beginning of a fit; the Gaussians are brought into a spatial order.
+GaussianFitState BeginFit(const GaussianCloud& initial);
+
+// A fit begins at a quarter of the resolution, then half of it.
+inline constexpr int kResolutions = 3;
+// How often the resolution is halved at a position of the fit.
+int HalvingsAt(const SplatOptions& options, double fraction);
+
 // Fits Gaussians to photographs: Adam on the loss of one whole photograph after another, first at
-// half the resolution; Gaussians that became invisible are put where the picture asks for more:
+// lower resolutions; Gaussians that became invisible are put where the picture asks for more:
 // they split those of which the position has the largest gradients. With the same seed the result
 // is the same bits, for any number of threads. Source: Kerbl et al. 2023, "3D Gaussian Splatting
 // for Real-Time Radiance Field Rendering".
 class GaussianFit {
  public:
-  //   views      must outlive this
   //   has_alpha  then the background is random, as in the field's training; else black
-  GaussianFit(const std::vector<View>& views, bool has_alpha, GaussianCloud initial,
+  GaussianFit(std::vector<TargetView> views, bool has_alpha, GaussianFitState begin,
               const SplatOptions& options, double near, std::uint64_t seed);
 
   // One iteration. Returns the loss; NaN if that, a gradient or a parameter is not finite.
   double Step(const FitProgress& progress);
 
-  const GaussianCloud& Cloud() const { return cloud_; }
-  std::int64_t Steps() const { return step_; }
+  const GaussianCloud& Cloud() const { return state_.cloud; }
+  const GaussianFitState& State() const { return state_; }
+  std::int64_t Steps() const { return state_.step; }
 
  private:
   // A photograph at one resolution.
@@ -42,7 +59,7 @@ class GaussianFit {
     TargetPicture target;
     kernels::GaussianCamera camera;
   };
-  Picture PictureOf(const View& view, bool is_half) const;
+  Picture PictureOf(const TargetView& view, int halvings) const;
   const Picture& NextPicture(double progress);
   // Rows of parameters that share a learning rate.
   struct RowGroup {
@@ -58,19 +75,18 @@ class GaussianFit {
   SplatOptions options_;
   bool has_alpha_;
   std::uint64_t seed_;
-  const std::vector<View>& views_;
+  std::vector<TargetView> views_;
   double near_;
-  std::vector<Picture> whole_, half_;  // empty where they would need too much memory
-  Picture picture_;                    // then that of this step
-  std::vector<std::uint32_t> turn_;    // the order of the photographs
-  GaussianCloud cloud_;
-  torch::Tensor first_moment_, second_moment_;  // of Adam, as the parameters
-  kernels::AdamBiasCorrection correction_;      // of this step
-  std::vector<float> need_;                     // gradient on the screen since the last split
+  // By the number of halvings; empty where they would need too much memory.
+  std::array<std::vector<Picture>, kResolutions> pictures_;
+  Picture picture_;                  // then that of this step
+  std::vector<std::uint32_t> turn_;  // the order of the photographs
+  std::int64_t round_ = -1;          // to which it belongs
+  GaussianFitState state_;
+  kernels::AdamBiasCorrection correction_;  // of this step
   GaussianRenderer renderer_;
   PictureLoss loss_;
   GaussianPicture gradient_;
-  std::int64_t step_ = 0;
   std::atomic<bool> is_finite_ = true;
 };
 

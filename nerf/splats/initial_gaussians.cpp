@@ -16,6 +16,8 @@ constexpr std::uint64_t kSubsetStream = 0x67617573735f5f31ull;
 constexpr std::size_t kNeighbours = 3;
 constexpr double kSmallest = 1e-4, kLargest = 1;  // normalized units
 constexpr double kOpacity = 0.1;
+// Black before black has no gradient, and points without a colour are black.
+constexpr float kDarkest = 0.02f;
 constexpr float kConstantHarmonic = 0.28209479f;
 
 // What nanoflann asks of a set of points.
@@ -77,7 +79,8 @@ GaussianCloud GaussiansAtPoints(const std::vector<ColoredPoint>& points, std::in
       cloud.At(i, kernels::kMeanRow + k) = static_cast<float>(used[i].x_in_normalized[k]);
       cloud.At(i, kernels::kLogScaleRow + k) =
           static_cast<float>(std::log(std::clamp(spacing[i], kSmallest, kLargest)));
-      cloud.At(i, kernels::kColorRow + k) = (used[i].rgb[k] - 0.5f) / kConstantHarmonic;
+      const float color = std::clamp(used[i].rgb[k], kDarkest, 1 - kDarkest);
+      cloud.At(i, kernels::kColorRow + k) = (color - 0.5f) / kConstantHarmonic;
     }
     cloud.At(i, kernels::kOpacityRow) = static_cast<float>(std::log(kOpacity / (1 - kOpacity)));
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <array>
 #include <vector>
 
 #include "nerf/scene/view.h"
@@ -7,7 +9,22 @@
 
 namespace nerf {
 
-// The photograph of a view; pixels that it does not store have a weight of 0.
-TargetPicture TargetOf(const View& view);
+// A photograph as Gaussians are fitted to it: with what the field has learned of its camera.
+struct TargetView {
+  const View* photograph = nullptr;          // its pixels; must outlive this
+  Camera camera;                             // with a refined focal length
+  Eigen::Isometry3d normalized_from_camera;  // refined
+  std::array<float, 3> gains = {1, 1, 1};    // of its exposure, by which pixels are divided
+  int halvings = 0;                          // of the resolution; that of the camera is reduced
+};
+
+// Photographs as they are.
+std::vector<TargetView> TargetViewsOf(const std::vector<View>& views);
+
+// The view at a resolution that is halved so many times more.
+TargetView Reduced(TargetView view, int halvings);
+
+// The photograph at the mean exposure; pixels that it does not store have a weight of 0.
+TargetPicture TargetOf(const TargetView& view);
 
 }  // namespace nerf

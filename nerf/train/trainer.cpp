@@ -39,7 +39,12 @@ double Trainer::TakeSteps(int steps) {
   return taken > 0 ? watch.Seconds() / taken : 0;
 }
 
-TrainSummary Trainer::Run(const std::atomic<bool>& stop, const TrainerListener& listener) {
+void Trainer::EndAt(double seconds) { state_->progress.EndAt(seconds); }
+
+double Trainer::SpentSeconds() const { return state_->progress.SpentSeconds(); }
+
+TrainSummary Trainer::Run(const std::atomic<bool>& stop, const TrainerListener& listener,
+                          double until) {
   State& s = *state_;
   const TrainOptions& options = s.Options();
   const auto report = [&](const TrainerEvent& event) {
@@ -49,7 +54,7 @@ TrainSummary Trainer::Run(const std::atomic<bool>& stop, const TrainerListener& 
 
   // Evaluated once per step, because it depends on the clock.
   bool finished = s.Finished();
-  while (!finished && !stop) {
+  while (!finished && !stop && (until >= 1 || s.progress.Fraction(s.step) < until)) {
     const double before = s.training_seconds;
     const auto rays = static_cast<double>(s.rays_per_batch);
     const StepResult result = s.Step();

@@ -62,7 +62,13 @@ class Trainer {
   // Trains until config.train.steps, the end of the time budget, the target PSNR, or until `stop`
   // is set; then saves and returns. Throws NonFiniteError naming the step, ray and stage; the last
   // good checkpoint stays.
-  TrainSummary Run(const std::atomic<bool>& stop, const TrainerListener& listener = {});
+  //   until  position in the training, 0 to 1, at which to save and return early
+  TrainSummary Run(const std::atomic<bool>& stop, const TrainerListener& listener = {},
+                   double until = 1);
+  // Ends a training with a time budget earlier or later: at these seconds since it began.
+  void EndAt(double seconds);
+  // Since it began, with what was spent before.
+  double SpentSeconds() const;
 
   // PSNR, dB, on a fixed sample of validation pixels, each photograph at its own fitted exposure,
   // whether the model simulates exposures or not. Needs validation photographs.

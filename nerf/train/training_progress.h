@@ -19,6 +19,8 @@ class TrainingProgress {
   double Fraction(std::int64_t step) const;
   // Reserves part of the time budget for the last validation and checkpoint.
   void ReserveSeconds(double seconds) { reserved_seconds_ = seconds; }
+  // Another time budget, with the reserve; the position jumps.
+  void EndAt(double seconds) { budget_ = seconds; }
 
  private:
   std::int64_t steps_;

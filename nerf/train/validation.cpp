@@ -94,8 +94,11 @@ RayBatch Validation::Rays(const Model& model) const {
 }
 
 double Validation::Psnr(const Model& model, bool fit_exposure) const {
-  RenderOutput out = MakeRenderer(model)->Render(Rays(model));
-  if (fit_exposure) FitExposures(out, batch_, model.scene.encoding);
+  return Psnr(MakeRenderer(model)->Render(Rays(model)), fit_exposure, model.scene.encoding);
+}
+
+double Validation::Psnr(RenderOutput out, bool fit_exposure, ColorEncoding encoding) const {
+  if (fit_exposure) FitExposures(out, batch_, encoding);
   std::vector<double> error(names_.size(), 0.0);
   std::vector<std::int64_t> values(names_.size(), 0);
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "nerf/geometry/rays.h"
+#include "nerf/image/image.h"
+#include "nerf/render/ray_renderer.h"
 #include "nerf/scene/dataset.h"
 #include "nerf/scene/pixel_sampler.h"
 
@@ -25,6 +27,11 @@ class Validation {
   // fit_exposure, each photograph is rendered at its own exposure, fitted to it: for models that
   // simulate exposures, and for those compared with them.
   double Psnr(const Model& model, bool fit_exposure) const;
+  // The same of colours and opacities that something else has rendered at these pixels.
+  double Psnr(RenderOutput rendered, bool fit_exposure, ColorEncoding encoding) const;
+
+  // The pixels, their colours, and their backgrounds.
+  const TargetBatch& Targets() const { return batch_; }
 
  private:
   RayBatch Rays(const Model& model) const;

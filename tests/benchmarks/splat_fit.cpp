@@ -23,7 +23,7 @@ constexpr double kNear = 0.02;
 double Psnr(const std::vector<View>& views, bool has_alpha, const GaussianCloud& cloud) {
   GaussianRenderer renderer;
   double sum = 0;
-  for (const View& view : views) {
+  for (const TargetView& view : TargetViewsOf(views)) {
     const TargetPicture target = TargetOf(view);
     const GaussianPicture& drawn = renderer.Draw(
         MakeGaussianCamera(view.camera, view.normalized_from_camera, kNear), cloud.Parameters());
@@ -93,9 +93,9 @@ void Run(int argc, char** argv) {
     for (int i = 0; i < options.count / 2; ++i)
       points.push_back({Eigen::Vector3d::Random() * 0.7, {0.5f, 0.5f, 0.5f}});
   }
-  GaussianFit fit(train.train, train.has_alpha,
-                  GaussiansAtPoints(points, options.count, options.harmonics_order, 1), options,
-                  kNear, 1);
+  GaussianFit fit(TargetViewsOf(train.train), train.has_alpha,
+                  BeginFit(GaussiansAtPoints(points, options.count, options.harmonics_order, 1)),
+                  options, kNear, 1);
   fmt::print("{} points, set up in {:.2f} s, {} train views\n", points.size(), watch.Seconds(),
              train.train.size());
   double next = length / 4;
@@ -116,7 +116,11 @@ void Run(int argc, char** argv) {
       next += length / 4;
       if (reached >= length) break;
     }
-    fit.Step({std::min(1.0, reached / length), by_steps ? length : 2000});
+    const double loss = fit.Step({std::min(1.0, reached / length), by_steps ? length : 2000});
+    if (!std::isfinite(loss)) {
+      fmt::print("the loss of iteration {} is not finite\n", fit.Steps());
+      return;
+    }
   }
   GaussianRenderer renderer;
   std::vector<double> frames;

@@ -62,7 +62,7 @@ SplatOptions Options() {
 }
 
 std::vector<float> Fit(const std::vector<View>& views, int steps, int order = 1) {
-  GaussianFit fit(views, false, Start(200, order), Options(), kNear, 1);
+  GaussianFit fit(TargetViewsOf(views), false, BeginFit(Start(200, order)), Options(), kNear, 1);
   for (int i = 0; i < steps; ++i) {
     fit.Step({static_cast<double>(i) / steps, static_cast<double>(steps)});
   }
@@ -72,7 +72,7 @@ std::vector<float> Fit(const std::vector<View>& views, int steps, int order = 1)
 
 TEST(GaussianFit, FindsTheColoursOfPhotographs) {
   const std::vector<View> views = Photographs(Scene());
-  GaussianFit fit(views, false, Start(200, 0), Options(), kNear, 1);
+  GaussianFit fit(TargetViewsOf(views), false, BeginFit(Start(200, 0)), Options(), kNear, 1);
   constexpr int kSteps = 300;
   double first = 0, last = 0;
   for (int i = 0; i < kSteps; ++i) {
@@ -98,9 +98,26 @@ TEST(GaussianFit, IsTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
+// Across a split, and within a round of the photographs.
+TEST(GaussianFit, GoesOnFromItsStateInTheSameBits) {
+  const std::vector<View> views = Photographs(Scene());
+  constexpr int kSteps = 60, kBefore = 31;
+  const auto progress = [](std::int64_t step) {
+    return FitProgress{static_cast<double>(step) / kSteps, kSteps};
+  };
+  GaussianFit first(TargetViewsOf(views), false, BeginFit(Start(200, 1)), Options(), kNear, 1);
+  while (first.Steps() < kBefore) first.Step(progress(first.Steps()));
+  GaussianFit second(TargetViewsOf(views), false, first.State(), Options(), kNear, 1);
+  while (second.Steps() < kSteps) second.Step(progress(second.Steps()));
+  const std::vector<float> whole = Fit(views, kSteps);
+  const std::span<const float> values = second.Cloud().Parameters().values;
+  ASSERT_EQ(values.size(), whole.size());
+  EXPECT_EQ(std::memcmp(values.data(), whole.data(), whole.size() * sizeof(float)), 0);
+}
+
 TEST(GaussianFit, InvisibleGaussiansAreUsed) {
   const std::vector<View> views = Photographs(Scene());
-  GaussianFit fit(views, false, Start(200, 0), Options(), kNear, 1);
+  GaussianFit fit(TargetViewsOf(views), false, BeginFit(Start(200, 0)), Options(), kNear, 1);
   const auto visible = [&] {
     int count = 0;
     for (std::int64_t i = 0; i < fit.Cloud().count; ++i) {
@@ -129,9 +146,9 @@ TEST(GaussianFit, PixelsThatAreNotStoredDoNotCount) {
     view.rgba = std::move(kept);
   }
   const auto loss_after = [&](const std::vector<View>& of) {
-    GaussianFit fit(of, false, Start(200, 0), Options(), kNear, 1);
+    GaussianFit fit(TargetViewsOf(of), false, BeginFit(Start(200, 0)), Options(), kNear, 1);
     for (int i = 0; i < 300; ++i) fit.Step({i / 300.0, 300});
-    GaussianFit check(whole, false, fit.Cloud(), Options(), kNear, 1);
+    GaussianFit check(TargetViewsOf(whole), false, BeginFit(fit.Cloud()), Options(), kNear, 1);
     return check.Step({0.9, 300});
   };
   EXPECT_LT(loss_after(views), 1.3 * loss_after(whole));

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "nerf/config/config.h"
+#include "nerf/model/snapshot.h"
+#include "nerf/scene/dataset.h"
+#include "nerf/splats/gaussian_fit.h"
+
+namespace nerf {
+
+// What Gaussians are fitted to: photographs with the cameras and exposures that a field has
+// learned. Their configuration has no harmonics where the field simulates no view dependence.
+struct GaussianScene {
+  Config config;
+  SceneFacts facts;
+  std::vector<TargetView> train, validation;
+};
+
+// Throws InputError for linear photographs, to which Gaussians are not fitted yet.
+//   data  must outlive the result
+GaussianScene GaussianSceneOf(const Model& field, const Dataset& data);
+
+// Where a fit begins.
+struct GaussianStart {
+  GaussianFitState state;
+  double near = 0;  // means nearer to a camera are not drawn, normalized units
+};
+
+// Begins at the surfaces that a field renders (FindSurfacePoints).
+//   progress  called with the number of views done, of scene.train
+// Throws InputError where its views agree on no surface.
+GaussianStart StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
+                              const std::function<void(std::size_t)>& progress);
+
+}  // namespace nerf

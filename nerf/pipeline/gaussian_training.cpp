@@ -1,0 +1,110 @@
+#include "nerf/pipeline/gaussian_training.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "nerf/base/stopwatch.h"
+#include "nerf/render/non_finite_error.h"
+
+namespace nerf {
+namespace {
+
+constexpr int kValidations = 8;  // in a fit
+
+// How far a fit is, by iterations or by time.
+class FitClock {
+ public:
+  //   spent  seconds, before
+  FitClock(const GaussianPlan& plan, const SplatOptions& options, double spent)
+      : plan_(plan), options_(options), spent_(spent) {}
+
+  double Seconds() const { return spent_ + watch_.Seconds(); }
+
+  FitProgress At(std::int64_t step) const {
+    const auto taken = static_cast<double>(step);
+    if (plan_.seconds == 0) {
+      const auto steps = static_cast<double>(plan_.steps);
+      return {std::min(1.0, taken / steps), steps};
+    }
+    const double fraction = std::min(1.0, Seconds() / (spent_ + plan_.seconds));
+    return {fraction,
+            step < kWarmUp ? kAssumedSteps : taken * StepsUntil(1) / StepsUntil(fraction)};
+  }
+
+ private:
+  static constexpr int kWarmUp = 20;
+  static constexpr double kAssumedSteps = 2000;
+
+  // How many iterations there are until then, in units of those at full resolution.
+  double StepsUntil(double fraction) const {
+    // An iteration at lower resolution takes about so much of the time of another.
+    constexpr double kQuarter = 0.25, kHalf = 0.4;
+    const double quarter = options_.quarter_resolution;
+    const double half = std::max(quarter, options_.half_resolution);
+    return std::min(fraction, quarter) / kQuarter +
+           std::clamp(fraction - quarter, 0.0, half - quarter) / kHalf +
+           std::max(0.0, fraction - half);
+  }
+
+  const GaussianPlan& plan_;
+  const SplatOptions& options_;
+  double spent_;
+  Stopwatch watch_;
+};
+
+}  // namespace
+
+GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start, double seconds_before,
+                            const GaussianValidation* validation, const GaussianPlan& plan,
+                            const std::atomic<bool>& stop, const PipelineListener& listener) {
+  const SplatOptions& options = scene.config.splats;
+  GaussianFit fit(scene.train, scene.facts.has_alpha, std::move(start.state), options, start.near,
+                  scene.config.train.seed);
+  const FitClock clock(plan, options, seconds_before);
+  GaussianSummary summary;
+  const auto model = [&] {
+    return GaussianModel(scene.config, scene.facts, fit.Cloud(), start.near, fit.Steps());
+  };
+  const auto validate = [&] {
+    if (validation == nullptr || validation->Empty()) return;
+    summary.psnr = validation->Psnr(fit.Cloud(), start.near);
+    summary.reached_target = plan.target_psnr > 0 && summary.psnr >= plan.target_psnr;
+    summary.curve.Add(clock.Seconds(), summary.psnr);
+  };
+  const auto save_to_resume = [&] {
+    const InterruptedFit interrupted = {fit.State(), clock.Seconds()};
+    if (!plan.file.empty()) WriteGaussians(model(), plan.file, &interrupted);
+  };
+  FitProgress progress = clock.At(fit.Steps());
+  const auto part = [&] { return static_cast<int>(progress.fraction * kValidations); };
+  while (progress.fraction < 1 && !summary.reached_target && !stop) {
+    const int part_before = part();
+    const double loss = fit.Step(progress);
+    if (!std::isfinite(loss)) {
+      throw NonFiniteError(fmt::format(
+          "the loss of iteration {} of the Gaussians is not finite; try smaller rates: --set "
+          "splats.mean_rate={}",
+          fit.Steps(), options.mean_rate / 3));
+    }
+    progress = clock.At(fit.Steps());
+    if (part() > part_before && progress.fraction < 1) validate();
+    if (plan.checkpoint_every > 0 && fit.Steps() % plan.checkpoint_every == 0) save_to_resume();
+    listener(GaussiansStepped{fit.Steps(), progress.fraction, loss, summary.psnr});
+  }
+  summary.finished = progress.fraction >= 1 || summary.reached_target;
+  if (summary.finished) {
+    validate();
+    if (!plan.file.empty()) WriteGaussians(model(), plan.file);
+  } else {
+    save_to_resume();
+  }
+  summary.steps = fit.Steps();
+  summary.gaussians = fit.Cloud().count;
+  summary.seconds = clock.Seconds();
+  return {model(), summary};
+}
+
+}  // namespace nerf

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "nerf/pipeline/events.h"
+#include "nerf/pipeline/gaussian_scene.h"
+#include "nerf/pipeline/gaussian_validation.h"
+
+namespace nerf {
+
+// How long a fit takes, and what it writes.
+struct GaussianPlan {
+  double seconds = 0;               // of the fit, without what was spent on it before; 0: by steps
+  std::int64_t steps = 0;           // iterations, where there is no time
+  std::filesystem::path file = {};  // RUN/splats.nerf; empty: nothing is written
+  std::int64_t checkpoint_every = 0;  // iterations; 0: only at the end
+  double target_psnr = 0;             // dB, on validation photographs; 0: none
+};
+
+struct GaussianResult {
+  GaussianModel model;
+  GaussianSummary summary;
+};
+
+// Fits Gaussians to the end, or until `stop` is set; then they are written with what resuming
+// needs. By steps the result is the same bits, whether it was interrupted or not.
+//   seconds_before  spent on the fit before it was interrupted
+//   validation      null, or empty: there is none
+// Throws NonFiniteError naming the iteration; the last file stays.
+GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start, double seconds_before,
+                            const GaussianValidation* validation, const GaussianPlan& plan,
+                            const std::atomic<bool>& stop, const PipelineListener& listener);
+
+}  // namespace nerf

@@ -1,0 +1,127 @@
+#include "nerf/pipeline/representation_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "nerf/base/input_error.h"
+#include "nerf/base/stopwatch.h"
+#include "nerf/effects/exposure_fit.h"
+#include "nerf/render/non_finite_error.h"
+#include "nerf/scene/dataset.h"
+
+namespace nerf {
+namespace {
+
+// The least part of a trial that is fitted, however long the surfaces took.
+constexpr double kLeastFit = 0.5;
+// At so few pixels and Gaussians a second of fitting reaches what a minute reaches in full.
+constexpr int kLongestSide = 160;  // pixels
+constexpr int kFewerGaussians = 8;
+constexpr double kHalfResolution = 0.3;
+// dB. The field will learn more until the end than the Gaussians of the trial lack.
+constexpr double kPromise = 0.3;
+
+// The scene at a resolution at which a trial is short.
+GaussianScene ReducedScene(const Model& field, const Dataset& data) {
+  GaussianScene scene = GaussianSceneOf(field, data);
+  int halvings = 0;
+  for (const TargetView& view : scene.train) {
+    const int side = std::max(view.camera.width, view.camera.height);
+    while (side >> halvings > kLongestSide) ++halvings;
+  }
+  for (auto* views : {&scene.train, &scene.validation}) {
+    for (TargetView& view : *views) {
+      int possible = halvings;
+      while (std::min(view.camera.width, view.camera.height) >> possible < 1) --possible;
+      view = Reduced(view, possible);
+    }
+  }
+  SplatOptions& options = scene.config.splats;
+  options.count = std::max(16, options.count / kFewerGaussians);
+  options.quarter_resolution = 0;
+  options.half_resolution = kHalfResolution;
+  return scene;
+}
+
+// What a view shows on the display background: [pixels,3].
+std::vector<float> Shown(const TargetPicture& target, const Eigen::Vector3f& background) {
+  std::vector<float> rgb;
+  for (int y = 0; y < target.height; ++y) {
+    for (int x = 0; x < target.width; ++x) {
+      const float alpha = target.Row(TargetPicture::kOpacity, y)[x];
+      for (int c = 0; c < 3; ++c) {
+        rgb.push_back(alpha * target.Row(c, y)[x] + (1 - alpha) * background[c]);
+      }
+    }
+  }
+  return rgb;
+}
+
+// PSNR, dB, of the pixels that a view stores.
+double Psnr(std::span<const float> drawn, std::span<const float> shown,
+            const TargetPicture& target) {
+  double error = 0, weight = 0;
+  for (int y = 0; y < target.height; ++y) {
+    for (int x = 0; x < target.width; ++x) {
+      const double w = target.Row(TargetPicture::kWeight, y)[x];
+      weight += 3 * w;
+      for (int c = 0; c < 3; ++c) {
+        const std::size_t at = 3 * (static_cast<std::size_t>(y) * target.width + x) + c;
+        const double d = std::clamp(drawn[at], 0.0f, 1.0f) - std::clamp(shown[at], 0.0f, 1.0f);
+        error += w * d * d;
+      }
+    }
+  }
+  return -10 * std::log10(std::max(error, 1e-10) / std::max(weight, 1e-10));
+}
+
+// The mean over views, each at its own exposure where exposures are simulated.
+double MeanPsnr(const SceneModel& model, const std::vector<TargetView>& views) {
+  const SceneFacts& facts = model.Scene();
+  const Eigen::Vector3f background = DisplayBackground(facts.has_alpha);
+  double sum = 0;
+  for (const TargetView& view : views) {
+    const TargetPicture target = TargetOf(view);
+    const std::vector<float> shown = Shown(target, background);
+    RenderedView drawn = model.Render(
+        {view.camera, facts.normalized_from_world.WorldFromCamera(view.normalized_from_camera)});
+    if (model.GetConfig().effects.exposure) {
+      FitExposure(drawn.rgb.pixels, drawn.opacity.pixels, shown, {background.data(), 3},
+                  facts.encoding);
+    }
+    sum += Psnr(drawn.rgb.pixels, shown, target);
+  }
+  return sum / static_cast<double>(views.size());
+}
+
+}  // namespace
+
+std::optional<ComparedPsnr> TryGaussians(const Model& field, const Dataset& data, double seconds,
+                                         std::int64_t steps, const std::atomic<bool>& stop,
+                                         const PipelineListener& listener) {
+  const Stopwatch watch;
+  const auto snapshot = ModelSnapshot::Copy(field, 0);
+  const GaussianScene scene = ReducedScene(field, data);
+  try {
+    GaussianStart start = StartAtSurfaces(*snapshot, scene, [](std::size_t) {});
+    GaussianPlan plan;
+    plan.steps = steps;
+    if (seconds > 0) plan.seconds = std::max(kLeastFit * seconds, seconds - watch.Seconds());
+    const GaussianResult result =
+        FitGaussians(scene, std::move(start), 0, nullptr, plan, stop, listener);
+    if (!result.summary.finished) return std::nullopt;
+    return ComparedPsnr{MeanPsnr(*snapshot, scene.validation),
+                        MeanPsnr(result.model, scene.validation)};
+  } catch (const InputError&) {
+    return std::nullopt;  // no surfaces
+  } catch (const NonFiniteError&) {
+    return std::nullopt;
+  }
+}
+
+bool SplatsPromiseMore(const ComparedPsnr& trial) { return trial.splats > trial.field + kPromise; }
+
+}  // namespace nerf
