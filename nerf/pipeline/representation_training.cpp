@@ -37,17 +37,20 @@ class Training {
         record_(ReadRepresentation(run)) {}
 
   RepresentationsTrained Run() {
-    if (!record_.makes_splats && !Decide()) return {field_, record_, field_.finished};
+    if (!record_.makes_splats && !Decide()) return Result(field_.finished);
     if (*record_.makes_splats && HasBudget()) trainer_.EndAt(record_.field_seconds);
     TrainField(1);
     if (!field_.finished || field_.reached_target || !*record_.makes_splats) {
-      return {field_, record_, field_.finished};
+      return Result(field_.finished);
     }
-    const bool finished = MakeSplats();
-    return {field_, record_, finished};
+    return Result(MakeSplats());
   }
 
  private:
+  // With the members as they are after `finished` was found.
+  RepresentationsTrained Result(bool finished) const {
+    return {field_, record_, finished, field_.reached_target || splats_reached_target_};
+  }
   bool HasBudget() const { return options_.time_budget > 0; }
   // Of what is left of the time budget when training begins.
   double Part(double share) const { return share * (options_.time_budget - spent_); }
@@ -148,6 +151,7 @@ class Training {
       record_.reached = {field_.validation_psnr, fit.psnr};
       WriteRepresentation(record_, run_);
     }
+    splats_reached_target_ = fit.reached_target;
     listener_(GaussiansEnded{fit, record_.reached});
     return fit.finished;
   }
@@ -162,6 +166,7 @@ class Training {
   const double spent_;  // seconds, when training begins
   RepresentationRecord record_;
   TrainSummary field_;
+  bool splats_reached_target_ = false;
 };
 
 }  // namespace

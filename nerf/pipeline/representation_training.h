@@ -12,7 +12,8 @@ namespace nerf {
 struct RepresentationsTrained {
   TrainSummary field;
   RepresentationRecord record;
-  bool finished = false;  // both; false: stopped on request, can be resumed
+  bool finished = false;        // both; false: stopped on request, can be resumed
+  bool reached_target = false;  // train.target_psnr, by either
 };
 
 // Trains a field, and Gaussians beside it where train.representation asks for them or a trial

@@ -209,6 +209,7 @@ TrainSummary TrainingSession::Train(const std::atomic<bool>& stop) {
   if (trained.finished) picture = WritePicture(trained.record.Best());
   TrainSummary summary = trained.field;
   summary.finished = trained.finished;
+  summary.reached_target = trained.reached_target;
   listener_(TrainingEnded{summary, config_.train, request_.run, picture});
   return summary;
 }

@@ -79,7 +79,7 @@ GaussianCloud GaussiansAtPoints(const std::vector<ColoredPoint>& points, std::in
       cloud.At(i, kernels::kMeanRow + k) = static_cast<float>(used[i].x_in_normalized[k]);
       cloud.At(i, kernels::kLogScaleRow + k) =
           static_cast<float>(std::log(std::clamp(spacing[i], kSmallest, kLargest)));
-      const float color = std::clamp(used[i].rgb[k], kDarkest, 1 - kDarkest);
+      const float color = std::max(used[i].rgb[k], kDarkest);
       cloud.At(i, kernels::kColorRow + k) = (color - 0.5f) / kConstantHarmonic;
     }
     cloud.At(i, kernels::kOpacityRow) = static_cast<float>(std::log(kOpacity / (1 - kOpacity)));

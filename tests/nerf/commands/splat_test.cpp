@@ -27,7 +27,8 @@ class SplatCommand : public testing::Test {
     ASSERT_EQ(made.exit_status, 0) << made.output;
     const auto trained =
         RunNerf("train " + Path("sample/truth/sparse") + " -o " + Path("run") +
-                " --threads 2 --config fast --set train.steps=150 --effects config");
+                " --threads 2 --config fast --set train.steps=150 --effects config "
+                "--representation field");
     ASSERT_EQ(trained.exit_status, 0) << trained.output;
   }
   static void TearDownTestSuite() { delete folder_; }
@@ -54,7 +55,7 @@ TEST_F(SplatCommand, MakesGaussiansThatEvalAndRenderDraw) {
   const auto made = Splat();
   ASSERT_EQ(made.exit_status, 0) << made.output;
   EXPECT_THAT(made.output, HasSubstr("fitted 3000 Gaussians in 150 iterations"));
-  EXPECT_THAT(made.output, HasSubstr("the field has"));
+  EXPECT_THAT(made.output, HasSubstr("validation: Gaussians"));
   const double fitted = PsnrWith("splats");
   ASSERT_EQ(Splat("--set splats.steps=1").exit_status, 0);
   EXPECT_GT(fitted, PsnrWith("splats") + 1);
@@ -64,6 +65,42 @@ TEST_F(SplatCommand, MakesGaussiansThatEvalAndRenderDraw) {
   const Image picture = ReadImage(Path("views/view_000.png"), false);
   EXPECT_EQ(picture.width, 64);
   EXPECT_TRUE(fs::exists(Path("views/view_000.depth.exr")));
+}
+
+TEST_F(SplatCommand, TrainingMakesThemWhereTheyAreAskedFor) {
+  const auto trained =
+      RunNerf("train " + Path("sample/truth/sparse") + " -o " + Path("both") +
+              " --threads 2 --config fast --set train.steps=150 --effects config "
+              "--representation splats --set splats.count=3000 --set splats.steps=100");
+  ASSERT_EQ(trained.exit_status, 0) << trained.output;
+  EXPECT_THAT(trained.output, HasSubstr("fitted 3000 Gaussians in 100 iterations"));
+  const auto record = nlohmann::json::parse(Bytes(Path("both/representation.json")));
+  const auto with = [](const std::string& flags) -> std::string {
+    const auto eval = RunNerf("eval --json " + Path("both") + flags);
+    EXPECT_EQ(eval.exit_status, 0) << eval.output;
+    return nlohmann::json::parse(eval.output).at("with");
+  };
+  EXPECT_EQ(with(""), record.at("best").get<std::string>());
+  EXPECT_EQ(with(" --with field"), "field");
+  EXPECT_EQ(with(" --with splats"), "splats");
+  // The ways to save time are those of the field.
+  EXPECT_EQ(with(" --quality 0.5"), "field");
+  const auto again = RunNerf("splat --resume " + Path("both"));
+  EXPECT_EQ(again.exit_status, 2);
+  EXPECT_THAT(again.output, HasSubstr("its fit has ended"));
+  const auto changed = RunNerf("splat --resume --set splats.steps=5 " + Path("both"));
+  EXPECT_EQ(changed.exit_status, 2);
+  EXPECT_THAT(changed.output, HasSubstr("omit --set"));
+}
+
+TEST_F(SplatCommand, ADamagedRecordIsNamed) {
+  ASSERT_EQ(Splat().exit_status, 0);
+  std::ofstream(Path("run/representation.json")) << "{";
+  const auto eval = RunNerf("eval " + Path("run"));
+  EXPECT_EQ(eval.exit_status, 2);
+  EXPECT_THAT(eval.output, HasSubstr("representation.json"));
+  EXPECT_EQ(RunNerf("eval " + Path("run") + " --with field").exit_status, 0);
+  fs::remove(Path("run/representation.json"));
 }
 
 TEST_F(SplatCommand, TheSameSeedGivesTheSameBits) {

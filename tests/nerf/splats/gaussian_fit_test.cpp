@@ -130,6 +130,25 @@ TEST(GaussianFit, InvisibleGaussiansAreUsed) {
   EXPECT_GT(visible(), 100);
 }
 
+// Points of COLMAP may have no colour, and black before black would have no gradient.
+TEST(GaussianFit, BeginsAtPointsWithoutColour) {
+  const std::vector<View> views = Photographs(Scene());
+  std::vector<ColoredPoint> points;
+  for (int i = 0; i < 60; ++i) {
+    points.push_back({Eigen::Vector3d(i % 4 - 1.5, i / 4 % 4 - 1.5, i / 16 - 1.5) * 0.2,
+                      Eigen::Vector3f::Zero()});
+  }
+  GaussianFit fit(TargetViewsOf(views), false, BeginFit(GaussiansAtPoints(points, 200, 0, 1)),
+                  Options(), kNear, 1);
+  double first = 0, last = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double loss = fit.Step({i / 200.0, 200});
+    if (i < 10) first += loss / 10;
+    if (i >= 190) last += loss / 10;
+  }
+  EXPECT_LT(last, 0.7 * first);
+}
+
 // Beside what is not stored, pixels are not pulled to black by the windows of the structural loss.
 TEST(GaussianFit, PixelsThatAreNotStoredDoNotCount) {
   std::vector<View> views = Photographs(Scene());
