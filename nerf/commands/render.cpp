@@ -14,6 +14,7 @@
 #include "nerf/base/progress.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/model_choice.h"
+#include "nerf/commands/ply_scene.h"
 #include "nerf/commands/shots.h"
 #include "nerf/commands/threads.h"
 #include "nerf/effects/exposure_fit.h"
@@ -181,9 +182,34 @@ void WriteFilm(const ShotList& list, const RenderArguments& arguments, const fs:
   fmt::print("{}\n", film.string());
 }
 
+// Draws Gaussians that this or another program has written as PLY.
+void RenderPly(const RenderArguments& arguments) {
+  if (arguments.with == "field" || arguments.preview || arguments.quality != 1 ||
+      arguments.seconds_per_frame || !arguments.exposure_of.empty()) {
+    throw InputError(
+        "{}: is drawn exactly, and has no field and no photographs; leave out --with field, "
+        "--quality, --seconds-per-frame, --preview and --exposure-of",
+        arguments.run);
+  }
+  if (arguments.output.empty()) throw InputError("{}: give a folder with -o", arguments.run);
+  const ShotList list = ChoosePlyShots(arguments.shots, arguments.run);
+  const std::shared_ptr<const GaussianModel> model = OpenPly(arguments.run);
+  MakeOutputFolder(arguments.output);
+  for (const Shot& shot : list.shots) {
+    WriteShot(model->Render({shot.camera, shot.world_from_camera}), model->Scene(), arguments,
+              fs::path(arguments.output) / shot.name);
+  }
+  fmt::print("{} views in {}\n", list.shots.size(), arguments.output);
+  WriteFilm(list, arguments, arguments.output);
+}
+
 void RunRender(const RenderArguments& arguments) {
   UseThreads(arguments.threads);
   CheckArguments(arguments);
+  if (fs::path(arguments.run).extension() == ".ply") {
+    RenderPly(arguments);
+    return;
+  }
   const OpenedRun run = OpenRun(arguments.run);
   // The ways to save time are those of the field.
   const bool is_field = arguments.with == "auto" && (arguments.preview || arguments.quality != 1);
@@ -211,7 +237,7 @@ void RunRender(const RenderArguments& arguments) {
 void AddRenderCommand(CLI::App& app) {
   auto* command = app.add_subcommand("render", "Renders new views of a trained run");
   const auto arguments = std::make_shared<RenderArguments>();
-  command->add_option("run", arguments->run, "run folder")->required();
+  command->add_option("run", arguments->run, "run folder, or a PLY file of Gaussians")->required();
   command->add_option("-o,--output", arguments->output, "output folder [RUN/renders/...]");
   AddModelChoice(*command, arguments->with);
   auto* image =
@@ -257,7 +283,8 @@ void AddRenderCommand(CLI::App& app) {
       "  nerf render runs/fox --path orbit --seconds-per-frame 0.3\n"
       "  nerf render runs/fox --path orbit --with splats\n"
       "  nerf render runs/fox --pose pose.json --format exr --depth\n"
-      "  nerf render runs/fox --path camera_path.json -o film");
+      "  nerf render runs/fox --path camera_path.json -o film\n"
+      "  nerf render scene.ply --pose pose.json -o views");
   command->callback([arguments] { RunRender(*arguments); });
 }
 

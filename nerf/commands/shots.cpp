@@ -20,6 +20,8 @@ Shot ShotOf(const OpenedRun& run, std::size_t image, const std::string& name, in
   return {name, posed.world_from_camera, Downscaled(run.posed.cameras[posed.camera], downscale)};
 }
 
+}  // namespace
+
 ShotList ShotsOfPath(const CameraPath& path, const std::string& folder, int downscale) {
   ShotList list{{}, folder, path.frames_per_second};
   for (const PathPose& pose : path.poses) {
@@ -28,8 +30,6 @@ ShotList ShotsOfPath(const CameraPath& path, const std::string& folder, int down
   }
   return list;
 }
-
-}  // namespace
 
 ShotList ChooseShots(const OpenedRun& run, const ShotOptions& options, const fs::path& folder) {
   const int trained = run.model->GetModel().config.data.downscale;

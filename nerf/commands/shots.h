@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nerf/model/run_folder.h"
+#include "nerf/output/camera_path.h"
 #include "nerf/scene/posed_images.h"
 
 namespace nerf {
@@ -32,6 +33,10 @@ struct ShotList {
   std::string folder;                       // below RUN/renders
   std::optional<double> frames_per_second;  // of a film
 };
+
+// The poses of a path.
+//   folder  below RUN/renders
+ShotList ShotsOfPath(const CameraPath& path, const std::string& folder, int downscale);
 
 // The views to render.
 //   folder  of the run, for errors

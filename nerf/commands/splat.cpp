@@ -15,17 +15,29 @@
 #include "nerf/commands/training_display.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/gaussian_session.h"
+#include "nerf/splats/gaussian_ply.h"
 
 namespace nerf {
 namespace {
 
 struct SplatArguments {
+  std::string ply;
   GaussianRequest request;
   std::string run;
   int threads = 0;
 };
 
+void WritePly(const SplatArguments& arguments) {
+  const std::shared_ptr<const GaussianModel> model = OpenGaussians(arguments.run);
+  WriteGaussianPly(arguments.ply, model->Cloud(), model->Scene().normalized_from_world);
+  fmt::print("{} Gaussians in {}\n", model->Cloud().count, arguments.ply);
+}
+
 void RunSplat(SplatArguments& arguments) {
+  if (!arguments.ply.empty()) {
+    WritePly(arguments);
+    return;
+  }
   if (arguments.request.resume && !arguments.request.assignments.empty()) {
     throw InputError("--resume continues with the options of the fit; omit --set");
   }
@@ -68,8 +80,12 @@ void AddSplatCommand(CLI::App& app) {
                    "override a value: splats.count=100000; repeatable")
       ->allow_extra_args(false)
       ->take_all();
-  command->add_flag("--resume", arguments->request.resume,
-                    "continue a fit that was interrupted, with its options");
+  auto* resume = command->add_flag("--resume", arguments->request.resume,
+                                   "continue a fit that was interrupted, with its options");
+  command
+      ->add_option("--ply", arguments->ply,
+                   "make none, but write those of the run to this file, for other programs")
+      ->excludes(resume);
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "They begin at the surfaces that the field renders, and are fitted to the photographs of "
@@ -78,6 +94,7 @@ void AddSplatCommand(CLI::App& app) {
       "Examples:\n"
       "  nerf splat runs/fox\n"
       "  nerf splat runs/fox --time-budget 2m --set splats.count=100000\n"
+      "  nerf splat runs/fox --ply fox.ply\n"
       "  nerf render runs/fox --with splats --path orbit");
   command->callback([arguments] { RunSplat(*arguments); });
 }

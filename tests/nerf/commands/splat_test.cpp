@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -91,6 +92,38 @@ TEST_F(SplatCommand, TrainingMakesThemWhereTheyAreAskedFor) {
   const auto changed = RunNerf("splat --resume --set splats.steps=5 " + Path("both"));
   EXPECT_EQ(changed.exit_status, 2);
   EXPECT_THAT(changed.output, HasSubstr("omit --set"));
+}
+
+// What is written for other programs is drawn as the run draws it.
+TEST_F(SplatCommand, APlyFileIsWrittenAndDrawn) {
+  ASSERT_EQ(Splat().exit_status, 0);
+  const auto written = RunNerf("splat " + Path("run") + " --ply " + Path("scene.ply"));
+  ASSERT_EQ(written.exit_status, 0) << written.output;
+  EXPECT_THAT(written.output, HasSubstr("3000 Gaussians in"));
+  const auto frames = nlohmann::json::parse(Bytes(Path("run/transforms.json")));
+  nlohmann::json pose = {{"transform_matrix", frames.at("frames").at(0).at("transform_matrix")}};
+  for (const char* key : {"fl_x", "fl_y", "cx", "cy", "w", "h"}) {
+    pose[key] = frames.contains(key) ? frames[key] : frames["frames"][0].at(key);
+  }
+  std::ofstream(Path("pose.json")) << pose;
+  const std::string flags = " --pose " + Path("pose.json") + " -o ";
+  const auto of_run = RunNerf("render " + Path("run") + " --with splats" + flags + Path("a"));
+  ASSERT_EQ(of_run.exit_status, 0) << of_run.output;
+  const auto of_file = RunNerf("render " + Path("scene.ply") + flags + Path("b"));
+  ASSERT_EQ(of_file.exit_status, 0) << of_file.output;
+  const Image a = ReadImage(Path("a/pose.png"), false), b = ReadImage(Path("b/pose.png"), false);
+  ASSERT_EQ(a.width, 64);
+  ASSERT_EQ(a.pixels.size(), b.pixels.size());
+  double difference = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    difference += std::abs(a.pixels[i] - b.pixels[i]) / static_cast<double>(a.pixels.size());
+  }
+  EXPECT_LT(difference, 2e-3);
+  const auto no_pose = RunNerf("render " + Path("scene.ply") + " -o " + Path("c"));
+  EXPECT_EQ(no_pose.exit_status, 2);
+  EXPECT_THAT(no_pose.output, HasSubstr("a PLY file has no cameras"));
+  EXPECT_EQ(RunNerf("render " + Path("none.ply") + flags + Path("c")).exit_status, 2);
+  EXPECT_FALSE(fs::exists(Path("c")));
 }
 
 TEST_F(SplatCommand, ADamagedRecordIsNamed) {

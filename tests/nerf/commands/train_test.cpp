@@ -166,7 +166,7 @@ TEST_F(TrainCommand, DoesNotOverwriteForeignFiles) {
 TEST_F(TrainCommand, PrintsNoProgressWithoutATerminal) {
   const auto result = RunNerf(Arguments("quiet"));
   EXPECT_EQ(result.exit_status, 0) << result.output;
-  EXPECT_LE(std::ranges::count(result.output, '\n'), 6) << result.output;
+  EXPECT_LE(std::ranges::count(result.output, '\n'), 7) << result.output;
   EXPECT_THAT(result.output, Not(HasSubstr("\r")));
 }
 
