@@ -1,6 +1,9 @@
 #include "nerf/pipeline/representation_training.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "nerf/base/input_error.h"
@@ -43,7 +46,7 @@ class Training {
     if (!field_.finished || field_.reached_target || !*record_.makes_splats) {
       return Result(field_.finished);
     }
-    return Result(MakeSplats());
+    return Result(MakeSplatsOrWarn());
   }
 
  private:
@@ -127,13 +130,44 @@ class Training {
     return GaussianStart{interrupted->state, OpenGaussians(run_)->Near()};
   }
 
+  // The field is trained: where Gaussians were not asked for by name, it stands without them.
+  bool MakeSplatsOrWarn() {
+    const bool is_asked_for = options_.representation == Representation::kSplats;
+    const auto keep_field = [&](const std::exception& error) {
+      listener_(Warning{fmt::format("no Gaussians, the field is kept: {}", error.what())});
+      record_.makes_splats = false;
+      WriteRepresentation(record_, run_);
+      return true;
+    };
+    try {
+      return MakeSplats();
+    } catch (const InputError& error) {
+      if (is_asked_for || fs::exists(GaussiansPath(run_))) throw;
+      return keep_field(error);
+    } catch (const NonFiniteError& error) {
+      if (is_asked_for) throw;
+      return keep_field(error);
+    }
+  }
+
+  void Compare(double splats_psnr) {
+    record_.reached = {field_.validation_psnr, splats_psnr};
+    WriteRepresentation(record_, run_);
+  }
+
   // False where it was stopped.
   bool MakeSplats() {
     const GaussianScene scene = GaussianSceneOf(trainer_.GetModel(), data_);
     const GaussianValidation validation(scene, data_);
     double seconds_before = 0;
     std::optional<GaussianStart> start = Start(scene, seconds_before);
-    if (!start) return true;
+    if (!start) {  // it ended, but was interrupted before it was compared
+      const auto model = OpenGaussians(run_);
+      if (!record_.reached && !validation.Empty()) {
+        Compare(validation.Psnr(model->Cloud(), model->Near()));
+      }
+      return true;
+    }
     GaussianPlan plan;
     plan.steps = SplatSteps();
     plan.file = GaussiansPath(run_);
@@ -147,10 +181,7 @@ class Training {
     const GaussianSummary fit =
         FitGaussians(scene, std::move(*start), seconds_before, &validation, plan, stop_, listener_)
             .summary;
-    if (fit.finished && !validation.Empty()) {
-      record_.reached = {field_.validation_psnr, fit.psnr};
-      WriteRepresentation(record_, run_);
-    }
+    if (fit.finished && !validation.Empty()) Compare(fit.psnr);
     splats_reached_target_ = fit.reached_target;
     listener_(GaussiansEnded{fit, record_.reached});
     return fit.finished;

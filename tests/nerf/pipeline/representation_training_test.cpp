@@ -101,8 +101,14 @@ TEST(RepresentationTraining, AFitThatWasStoppedEndsInTheSameBits) {
   ExpectSameTensors(GaussiansPath(whole.path()), GaussiansPath(stopped.path()));
   ASSERT_TRUE(resumed.record.reached && uninterrupted.record.reached);
   EXPECT_EQ(resumed.record.reached->splats, uninterrupted.record.reached->splats);
-  // A run that has ended is not fitted again.
+  // A run that has ended is not fitted again, but compared where that is missing.
+  RepresentationRecord record = ReadRepresentation(stopped.path());
+  record.reached.reset();
+  WriteRepresentation(record, stopped.path());
   EXPECT_TRUE(Resume(small, stopped.path()).finished);
+  ASSERT_TRUE(ReadRepresentation(stopped.path()).reached);
+  EXPECT_EQ(ReadRepresentation(stopped.path()).reached->splats,
+            uninterrupted.record.reached->splats);
   ExpectSameTensors(GaussiansPath(whole.path()), GaussiansPath(stopped.path()));
 }
 
