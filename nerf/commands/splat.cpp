@@ -69,23 +69,26 @@ void AddSplatCommand(CLI::App& app) {
       "splat", "Makes Gaussians of a trained run, which are drawn in milliseconds");
   const auto arguments = std::make_shared<SplatArguments>();
   command->add_option("run", arguments->run, "run folder")->required();
-  command
-      ->add_option("--time-budget", arguments->request.time_budget,
-                   "end the fit after this time: 90, 30s, 2m, 1h [splats.steps iterations]")
-      ->transform(
-          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))
-      ->check(CLI::Range(1.0, 30.0 * 24 * 3600));
-  command
-      ->add_option("--set", arguments->request.assignments,
-                   "override a value: splats.count=100000; repeatable")
-      ->allow_extra_args(false)
-      ->take_all();
+  auto* budget =
+      command
+          ->add_option("--time-budget", arguments->request.time_budget,
+                       "end the fit after this time: 90, 30s, 2m, 1h [splats.steps iterations]")
+          ->transform(CLI::AsNumberWithUnit(
+              std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))
+          ->check(CLI::Range(1.0, 30.0 * 24 * 3600));
+  auto* set = command
+                  ->add_option("--set", arguments->request.assignments,
+                               "override a value: splats.count=100000; repeatable")
+                  ->allow_extra_args(false)
+                  ->take_all();
   auto* resume = command->add_flag("--resume", arguments->request.resume,
                                    "continue a fit that was interrupted, with its options");
   command
       ->add_option("--ply", arguments->ply,
                    "make none, but write those of the run to this file, for other programs")
-      ->excludes(resume);
+      ->excludes(resume)
+      ->excludes(budget)
+      ->excludes(set);
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "They begin at the surfaces that the field renders, and are fitted to the photographs of "
