@@ -69,13 +69,18 @@ GaussianSession FitToRun(const GaussianRequest& request, const Stopwatch& watch,
   if (request.time_budget > 0) {
     plan.seconds = std::max(1.0, request.time_budget - watch.Seconds());
   }
+  // What was compared before is overwritten.
+  RepresentationRecord record = ReadRepresentation(request.run);
+  if (record.reached) {
+    record.reached.reset();
+    WriteRepresentation(record, request.run);
+  }
   GaussianSession session;
   session.fit = FitGaussians(scene, start, interrupted ? interrupted->seconds : 0, &validation,
                              plan, stop, listener)
                     .summary;
   if (!session.fit.finished || validation.Empty()) return session;
   session.reached = ComparedPsnr{validation.Psnr(model), session.fit.psnr};
-  RepresentationRecord record = ReadRepresentation(request.run);
   record.reached = session.reached;
   WriteRepresentation(record, request.run);
   return session;
