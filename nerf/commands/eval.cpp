@@ -106,6 +106,11 @@ Evaluation EvaluateViews(const OpenedRun& run, const SceneModel& model,
   return evaluation;
 }
 
+// Those of the field, and of the Gaussians that began at it.
+double TrainingSeconds(const OpenedRun& run, bool uses_splats, const fs::path& folder) {
+  return run.training_seconds + (uses_splats ? OpenGaussians(folder)->Made().seconds : 0);
+}
+
 void RunEval(const EvalArguments& arguments) {
   UseThreads(arguments.threads);
   const OpenedRun run = OpenRun(arguments.run);
@@ -132,7 +137,7 @@ void RunEval(const EvalArguments& arguments) {
        {"exposure_fitted", evaluation.exposure_fitted},
        {"step", model->Step()},
        {"with", uses_splats ? "splats" : "field"},
-       {"training_seconds", run.training_seconds},
+       {"training_seconds", TrainingSeconds(run, uses_splats, arguments.run)},
        {"left_out", evaluation.unreadable.size()}});
   // File names may not be valid UTF-8.
   const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -50,7 +50,7 @@ std::shared_ptr<const GaussianModel> OpenPly(const std::filesystem::path& file) 
   }
   const double near = std::clamp(kNear * MedianDistance(read.cloud), 1e-6, 1e3);
   return std::make_shared<const GaussianModel>(LoadConfig("base", {}), SceneFacts(),
-                                               std::move(read.cloud), near, 0);
+                                               std::move(read.cloud), near, FitFacts());
 }
 
 ShotList ChoosePlyShots(const ShotOptions& options, const std::filesystem::path& file) {

@@ -96,10 +96,13 @@ double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArgumen
   if (arguments.seconds_per_frame && arguments.with == "auto" &&
       SplatsAreBetterThan(measured, *arguments.seconds_per_frame, arguments.run)) {
     uses_splats = true;
-    fmt::print(
-        "the Gaussians of the run are nearer to its photographs than the field at {} a "
-        "frame (quality {:.2f})\n",
-        FormatSeconds(*arguments.seconds_per_frame), measured.quality);
+    const std::string seconds = FormatSeconds(*arguments.seconds_per_frame);
+    if (measured.seconds > *arguments.seconds_per_frame) {
+      fmt::print("no quality of the field takes at most {} a frame; the Gaussians do\n", seconds);
+    } else {
+      fmt::print("at {} a frame the Gaussians are better than the field at quality {:.2f}\n",
+                 seconds, measured.quality);
+    }
     return 1;
   }
   const std::string loss = std::isinf(measured.psnr)

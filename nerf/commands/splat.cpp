@@ -1,4 +1,5 @@
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <map>
@@ -21,20 +22,25 @@ namespace nerf {
 namespace {
 
 struct SplatArguments {
-  std::string ply;
+  std::optional<std::string> ply;
   GaussianRequest request;
   std::string run;
   int threads = 0;
 };
 
 void WritePly(const SplatArguments& arguments) {
+  if (arguments.ply->empty()) throw InputError("--ply: name the file to write, like scene.ply");
   const std::shared_ptr<const GaussianModel> model = OpenGaussians(arguments.run);
-  WriteGaussianPly(arguments.ply, model->Cloud(), model->Scene().normalized_from_world);
-  fmt::print("{} Gaussians in {}\n", model->Cloud().count, arguments.ply);
+  if (ReadInterruptedFit(GaussiansPath(arguments.run))) {
+    spdlog::warn("{}: the fit was interrupted after {} iterations; --resume would end it",
+                 GaussiansPath(arguments.run).string(), model->Step());
+  }
+  WriteGaussianPly(*arguments.ply, model->Cloud(), model->Scene().normalized_from_world);
+  fmt::print("{} Gaussians in {}\n", model->Cloud().count, *arguments.ply);
 }
 
 void RunSplat(SplatArguments& arguments) {
-  if (!arguments.ply.empty()) {
+  if (arguments.ply) {
     WritePly(arguments);
     return;
   }
@@ -81,8 +87,9 @@ void AddSplatCommand(CLI::App& app) {
                                "override a value: splats.count=100000; repeatable")
                   ->allow_extra_args(false)
                   ->take_all();
-  auto* resume = command->add_flag("--resume", arguments->request.resume,
-                                   "continue a fit that was interrupted, with its options");
+  auto* resume =
+      command->add_flag("--resume", arguments->request.resume,
+                        "continue a fit that was interrupted, with its options and its plan");
   command
       ->add_option("--ply", arguments->ply,
                    "make none, but write those of the run to this file, for other programs")

@@ -1,5 +1,6 @@
 #include "nerf/model/gaussian_model.h"
 
+#include <exception>
 #include <utility>
 
 #include "nerf/base/input_error.h"
@@ -15,6 +16,8 @@ constexpr float kLeastOpacity = 1e-3f;  // below it depth is undefined
 // Tensors of the file.
 constexpr char kGaussians[] = "gaussians", kFirstMoment[] = "first_moment",
                kSecondMoment[] = "second_moment", kNeed[] = "need";
+// Of its JSON.
+constexpr char kPlannedSeconds[] = "planned_seconds", kPlannedSteps[] = "planned_steps";
 
 GaussianModel ModelOf(const Checkpoint& checkpoint, const std::filesystem::path& file) {
   try {
@@ -38,8 +41,10 @@ GaussianModel ModelOf(const Checkpoint& checkpoint, const std::filesystem::path&
     }
     GaussianCloud cloud(count, order);
     CopyTensor(checkpoint.tensors, kGaussians, cloud.parameters);
+    const FitFacts made = {meta.at("step"), meta.value("fit_seconds", 0.0),
+                           meta.value("field_step", std::int64_t{-1})};
     return {ConfigFromJson(meta.at("config"), file.string()), SceneFromJson(meta.at("scene")),
-            std::move(cloud), meta.at("near").get<double>(), meta.at("step").get<std::int64_t>()};
+            std::move(cloud), meta.at("near").get<double>(), made};
   } catch (const nlohmann::json::exception& error) {
     throw InputError("{}: is no file of Gaussians ({}); make them again with nerf splat",
                      file.string(), error.what());
@@ -49,12 +54,12 @@ GaussianModel ModelOf(const Checkpoint& checkpoint, const std::filesystem::path&
 }  // namespace
 
 GaussianModel::GaussianModel(Config config, SceneFacts scene, GaussianCloud cloud, double near,
-                             std::int64_t step)
+                             const FitFacts& made)
     : config_(std::move(config)),
       scene_(std::move(scene)),
       cloud_(std::move(cloud)),
       near_(near),
-      step_(step) {}
+      made_(made) {}
 
 RenderedView GaussianModel::Render(const ViewRequest& view) const {
   if (view.quality != 1) {
@@ -94,13 +99,16 @@ void WriteGaussians(const GaussianModel& model, const std::filesystem::path& fil
   Checkpoint checkpoint;
   checkpoint.meta = {{"config", JsonFromConfig(model.GetConfig())},
                      {"scene", JsonFromScene(model.Scene())},
-                     {"step", model.Step()},
+                     {"step", model.Made().steps},
+                     {"fit_seconds", model.Made().seconds},
+                     {"field_step", model.Made().field_step},
                      {"gaussians", model.Cloud().count},
                      {"harmonics_order", model.Cloud().order},
                      {"near", model.Near()}};
   checkpoint.tensors[kGaussians] = model.Cloud().parameters;
   if (fit != nullptr) {
-    checkpoint.meta["fit_seconds"] = fit->seconds;
+    checkpoint.meta[kPlannedSeconds] = fit->planned_seconds;
+    checkpoint.meta[kPlannedSteps] = fit->planned_steps;
     checkpoint.tensors[kFirstMoment] = fit->state.first_moment;
     checkpoint.tensors[kSecondMoment] = fit->state.second_moment;
     checkpoint.tensors[kNeed] = fit->state.need;
@@ -115,20 +123,27 @@ GaussianModel ReadGaussians(const std::filesystem::path& file) {
 std::optional<InterruptedFit> ReadInterruptedFit(const std::filesystem::path& file) {
   const Checkpoint checkpoint = ReadCheckpoint(file);
   const GaussianModel model = ModelOf(checkpoint, file);
-  const auto seconds = checkpoint.meta.find("fit_seconds");
-  if (seconds == checkpoint.meta.end()) return std::nullopt;
-  if (!seconds->is_number() || !(seconds->get<double>() >= 0) || model.Step() < 0) {
-    throw InputError("{}: fit_seconds or step is out of range; make the Gaussians again",
-                     file.string());
-  }
+  const nlohmann::json& meta = checkpoint.meta;
+  if (!meta.contains(kPlannedSeconds) && !meta.contains(kPlannedSteps)) return std::nullopt;
   const GaussianCloud& cloud = model.Cloud();
   InterruptedFit fit = {
       {cloud, torch::zeros_like(cloud.parameters), torch::zeros_like(cloud.parameters),
-       torch::zeros({cloud.parameters.size(0) * kernels::kGaussiansInBlock}), model.Step()},
-      seconds->get<double>()};
-  CopyTensor(checkpoint.tensors, kFirstMoment, fit.state.first_moment);
-  CopyTensor(checkpoint.tensors, kSecondMoment, fit.state.second_moment);
-  CopyTensor(checkpoint.tensors, kNeed, fit.state.need);
+       torch::zeros({cloud.parameters.size(0) * kernels::kGaussiansInBlock}), model.Step()}};
+  try {
+    fit.planned_seconds = meta.at(kPlannedSeconds);
+    fit.planned_steps = meta.at(kPlannedSteps);
+    CopyTensor(checkpoint.tensors, kFirstMoment, fit.state.first_moment);
+    CopyTensor(checkpoint.tensors, kSecondMoment, fit.state.second_moment);
+    CopyTensor(checkpoint.tensors, kNeed, fit.state.need);
+  } catch (const std::exception& error) {  // of JSON, or InputError without the file's name
+    throw InputError("{}: the fit cannot be resumed ({}); make the Gaussians again with nerf splat",
+                     file.string(), error.what());
+  }
+  if (!(fit.planned_seconds >= 0 && model.Made().seconds >= 0) || model.Step() < 0 ||
+      (fit.planned_seconds == 0 && fit.planned_steps < 1)) {
+    throw InputError("{}: the plan of its fit is out of range; make the Gaussians again",
+                     file.string());
+  }
   return fit;
 }
 

@@ -10,18 +10,26 @@
 
 namespace nerf {
 
+// How Gaussians were made.
+struct FitFacts {
+  std::int64_t steps = 0;        // iterations
+  double seconds = 0;            // of the fit
+  std::int64_t field_step = -1;  // of the field at whose surfaces it began; -1: of none
+};
+
 // Gaussians of a run, with what is needed to render them.
 class GaussianModel : public SceneModel {
  public:
   //   near  means nearer to a camera are not drawn, normalized units
   GaussianModel(Config config, SceneFacts scene, GaussianCloud cloud, double near,
-                std::int64_t step);
+                const FitFacts& made);
 
   // Exact, whatever the quality; throws InputError for another one than 1.
   RenderedView Render(const ViewRequest& view) const override;
   const Config& GetConfig() const override { return config_; }
   const SceneFacts& Scene() const override { return scene_; }
-  std::int64_t Step() const override { return step_; }
+  std::int64_t Step() const override { return made_.steps; }
+  const FitFacts& Made() const { return made_; }
   const GaussianCloud& Cloud() const { return cloud_; }
   double Near() const { return near_; }
 
@@ -30,13 +38,15 @@ class GaussianModel : public SceneModel {
   SceneFacts scene_;
   GaussianCloud cloud_;
   double near_;
-  std::int64_t step_;
+  FitFacts made_;
 };
 
 // A fit that has not ended.
 struct InterruptedFit {
   GaussianFitState state;
-  double seconds = 0;  // spent on it so far
+  // Its plan: the seconds of the whole fit, or where these are 0 its iterations.
+  double planned_seconds = 0;
+  std::int64_t planned_steps = 0;
 };
 
 // Writes a model to a file, and reads it back. Throws InputError naming a file that is missing,

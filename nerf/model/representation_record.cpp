@@ -21,9 +21,13 @@ std::optional<ComparedPsnr> PsnrOf(const nlohmann::json& record, const char* key
 }  // namespace
 
 Representation RepresentationRecord::Best() const {
-  if (reached)
-    return reached->splats > reached->field ? Representation::kSplats : Representation::kField;
-  return Representation::kField;
+  const bool splats = reached ? reached->splats > reached->field : splats_stand;
+  return splats ? Representation::kSplats : Representation::kField;
+}
+
+void RepresentationRecord::ForgetReached() {
+  reached.reset();
+  splats_stand = false;
 }
 
 RepresentationRecord ReadRepresentation(const std::filesystem::path& run) {
@@ -36,6 +40,7 @@ RepresentationRecord ReadRepresentation(const std::filesystem::path& run) {
     record.tried = PsnrOf(stored, "tried_psnr");
     record.reached = PsnrOf(stored, "reached_psnr");
     record.field_seconds = stored.value("field_seconds", 0.0);
+    record.splats_stand = stored.value("splats_stand", false);
   } catch (const nlohmann::json::exception& error) {
     throw InputError("{}: {}; delete it, and choose with --with field or --with splats",
                      file.string(), error.what());
@@ -49,6 +54,7 @@ void WriteRepresentation(const RepresentationRecord& record, const std::filesyst
   if (record.tried) stored["tried_psnr"] = JsonOf(*record.tried);
   if (record.reached) stored["reached_psnr"] = JsonOf(*record.reached);
   if (record.field_seconds > 0) stored["field_seconds"] = record.field_seconds;
+  if (record.splats_stand) stored["splats_stand"] = true;
   stored["best"] = record.Best() == Representation::kSplats ? "splats" : "field";
   WriteFileAtomically(RepresentationPath(run), stored.dump(2) + "\n");
 }

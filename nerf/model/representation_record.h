@@ -20,6 +20,11 @@ struct RepresentationRecord {
   std::optional<ComparedPsnr> tried;
   double field_seconds = 0;  // the end of the field's part of the time budget; 0: there is none
   std::optional<ComparedPsnr> reached;  // at the end
+  // Gaussians were asked for by name and have ended, but nothing validates.
+  bool splats_stand = false;
+
+  // What was reached is of a field or Gaussians that are no more.
+  void ForgetReached();
 
   // Which one `nerf render` and `nerf eval` use.
   Representation Best() const;

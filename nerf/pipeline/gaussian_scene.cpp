@@ -41,16 +41,22 @@ GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
   return scene;
 }
 
-GaussianStart StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
-                              const std::function<void(std::size_t)>& progress) {
+std::optional<GaussianStart> StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
+                                             const std::atomic<bool>& stop,
+                                             const std::function<void(std::size_t)>& progress) {
   const SplatOptions& options = scene.config.splats;
-  const SurfacePoints surfaces = FindSurfacePoints(field, scene.train, options.count, progress);
-  if (surfaces.points.empty()) {
+  const std::optional<SurfacePoints> surfaces =
+      FindSurfacePoints(field, scene.train, options.count, stop, progress);
+  if (!surfaces) return std::nullopt;
+  if (surfaces->points.empty()) {
     throw InputError("the views of the field agree on no surface; train it longer");
   }
-  return {BeginFit(GaussiansAtPoints(surfaces.points, options.count, options.harmonics_order,
-                                     scene.config.train.seed)),
-          std::max(scene.config.march.near_distance, kNearShare * surfaces.nearest)};
+  FitFacts made;
+  made.field_step = field.Step();
+  return GaussianStart{
+      BeginFit(GaussiansAtPoints(surfaces->points, options.count, options.harmonics_order,
+                                 scene.config.train.seed)),
+      std::max(scene.config.march.near_distance, kNearShare * surfaces->nearest), made};
 }
 
 }  // namespace nerf

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "nerf/config/config.h"
+#include "nerf/model/gaussian_model.h"
 #include "nerf/model/snapshot.h"
 #include "nerf/scene/dataset.h"
-#include "nerf/splats/gaussian_fit.h"
 
 namespace nerf {
 
@@ -26,13 +28,16 @@ GaussianScene GaussianSceneOf(const Model& field, const Dataset& data);
 // Where a fit begins.
 struct GaussianStart {
   GaussianFitState state;
-  double near = 0;  // means nearer to a camera are not drawn, normalized units
+  double near = 0;     // means nearer to a camera are not drawn, normalized units
+  FitFacts made = {};  // so far, where it was interrupted
 };
 
 // Begins at the surfaces that a field renders (FindSurfacePoints).
 //   progress  called with the number of views done, of scene.train
+//   returns   nullopt where it was stopped
 // Throws InputError where its views agree on no surface.
-GaussianStart StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
-                              const std::function<void(std::size_t)>& progress);
+std::optional<GaussianStart> StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
+                                             const std::atomic<bool>& stop,
+                                             const std::function<void(std::size_t)>& progress);
 
 }  // namespace nerf

@@ -29,61 +29,12 @@ Config ConfigOf(const Config& of_run, const std::vector<std::string>& assignment
   return ConfigFromJson(json, "splats");
 }
 
-// Thrown by listeners where the user asks to stop.
-struct Stopped {};
-
-std::optional<InterruptedFit> FitToResume(const fs::path& run) {
-  OpenGaussians(run);  // names what is missing
-  std::optional<InterruptedFit> fit = ReadInterruptedFit(GaussiansPath(run));
-  if (!fit) {
-    throw InputError("{}: its fit has ended; make Gaussians anew without --resume",
-                     GaussiansPath(run).string());
-  }
-  return fit;
-}
-
-GaussianSession FitToRun(const GaussianRequest& request, const Stopwatch& watch,
-                         const std::atomic<bool>& stop, const PipelineListener& listener) {
-  const OpenedRun run = OpenRun(request.run);
-  std::optional<InterruptedFit> interrupted;
-  if (request.resume) interrupted = FitToResume(request.run);
-  Model model = CloneModel(run.model->GetModel());
-  model.config = request.resume ? OpenGaussians(request.run)->GetConfig()
-                                : ConfigOf(model.config, request.assignments);
-  const Dataset data =
-      LoadPhotographs(sfm::ReadTransformsJson(PosesPath(request.run)), model.config,
-                      model.scene.normalized_from_world, request.run, listener);
-  const GaussianScene scene = GaussianSceneOf(model, data);
-  const GaussianValidation validation(scene, data);
-  const auto start = [&]() -> GaussianStart {
-    if (interrupted) return {interrupted->state, OpenGaussians(request.run)->Near()};
-    return StartAtSurfaces(*run.model, scene, [&](std::size_t done) {
-      listener(SurfacesRendered{done, data.train.size()});
-      if (stop) throw Stopped();
-    });
-  }();
-  GaussianPlan plan;
-  plan.steps = scene.config.splats.steps;
-  plan.file = GaussiansPath(request.run);
-  plan.checkpoint_every = scene.config.train.checkpoint_every;
-  if (request.time_budget > 0) {
-    plan.seconds = std::max(1.0, request.time_budget - watch.Seconds());
-  }
-  // What was compared before is overwritten.
-  RepresentationRecord record = ReadRepresentation(request.run);
-  if (record.reached) {
-    record.reached.reset();
-    WriteRepresentation(record, request.run);
-  }
-  GaussianSession session;
-  session.fit = FitGaussians(scene, start, interrupted ? interrupted->seconds : 0, &validation,
-                             plan, stop, listener)
-                    .summary;
-  if (!session.fit.finished || validation.Empty()) return session;
-  session.reached = ComparedPsnr{validation.Psnr(model), session.fit.psnr};
-  record.reached = session.reached;
-  WriteRepresentation(record, request.run);
-  return session;
+// What was compared before is overwritten.
+void ForgetReached(const fs::path& run) {
+  RepresentationRecord record = ReadRepresentation(run);
+  if (!record.reached && !record.splats_stand) return;
+  record.ForgetReached();
+  WriteRepresentation(record, run);
 }
 
 }  // namespace
@@ -91,11 +42,47 @@ GaussianSession FitToRun(const GaussianRequest& request, const Stopwatch& watch,
 std::optional<GaussianSession> MakeGaussians(const GaussianRequest& request, const Stopwatch& watch,
                                              const std::atomic<bool>& stop,
                                              const PipelineListener& listener) {
-  try {
-    return FitToRun(request, watch, stop, listener);
-  } catch (const Stopped&) {
-    return std::nullopt;
+  const OpenedRun run = OpenRun(request.run);
+  const fs::path file = GaussiansPath(request.run);
+  GaussianPlan plan;
+  std::optional<GaussianStart> start;
+  Model model = CloneModel(run.model->GetModel());
+  if (request.resume) {
+    model.config = OpenGaussians(request.run)->GetConfig();
+    start = StartAgain(file, plan);
+    if (!start) {
+      throw InputError("{}: its fit has ended; make Gaussians anew without --resume",
+                       file.string());
+    }
+  } else {
+    model.config = ConfigOf(model.config, request.assignments);
+    plan.steps = model.config.splats.steps;
   }
+  const Dataset data =
+      LoadPhotographs(sfm::ReadTransformsJson(PosesPath(request.run)), model.config,
+                      model.scene.normalized_from_world, request.run, listener);
+  const GaussianScene scene = GaussianSceneOf(model, data);
+  const GaussianValidation validation(scene, data);
+  if (!start) {
+    start = StartAtSurfaces(*run.model, scene, stop, [&](std::size_t done) {
+      listener(SurfacesRendered{done, data.train.size()});
+    });
+  }
+  if (!start) return std::nullopt;
+  plan.file = file;
+  plan.checkpoint_every = scene.config.train.checkpoint_every;
+  if (request.time_budget > 0) {
+    plan.seconds = std::max(kLeastFitSeconds, request.time_budget - watch.Seconds());
+  }
+  ForgetReached(request.run);
+  GaussianSession session;
+  session.fit = FitGaussians(scene, std::move(*start), &validation, plan, stop, listener).summary;
+  if (!session.fit.finished || validation.Empty()) return session;
+  session.reached = ComparedPsnr{validation.Psnr(model), session.fit.psnr};
+  RepresentationRecord record = ReadRepresentation(request.run);
+  record.reached = session.reached;
+  WriteRepresentation(record, request.run);
+  return session;
 }
 
 }  // namespace nerf

@@ -13,7 +13,8 @@ namespace nerf {
 
 struct GaussianRequest {
   std::filesystem::path run;
-  // Seconds from the beginning of the command to the end of the fit; 0: splats.steps iterations.
+  // Seconds from the beginning of the command to the end of the fit; 0: splats.steps iterations, or
+  // as an interrupted fit was planned.
   double time_budget = 0;
   std::vector<std::string> assignments;  // "splats.key=value"
   bool resume = false;  // go on with a fit that was interrupted, with its configuration

@@ -22,6 +22,10 @@ class FitClock {
       : plan_(plan), options_(options), spent_(spent) {}
 
   double Seconds() const { return spent_ + watch_.Seconds(); }
+  // Those of the whole fit; 0: it is by iterations.
+  double PlannedSeconds() const { return plan_.seconds > 0 ? spent_ + plan_.seconds : 0; }
+  // Keeps time for what follows the last iteration.
+  void Reserve(double seconds) { reserved_ = std::max(reserved_, seconds); }
 
   FitProgress At(std::int64_t step) const {
     const auto taken = static_cast<double>(step);
@@ -29,7 +33,7 @@ class FitClock {
       const auto steps = static_cast<double>(plan_.steps);
       return {std::min(1.0, taken / steps), steps};
     }
-    const double fraction = std::min(1.0, Seconds() / (spent_ + plan_.seconds));
+    const double fraction = std::min(1.0, Seconds() / std::max(1e-3, PlannedSeconds() - reserved_));
     return {fraction,
             step < kWarmUp ? kAssumedSteps : taken * StepsUntil(1) / StepsUntil(fraction)};
   }
@@ -51,31 +55,41 @@ class FitClock {
 
   const GaussianPlan& plan_;
   const SplatOptions& options_;
-  double spent_;
+  double spent_, reserved_ = 0;
   Stopwatch watch_;
 };
 
+[[noreturn]] void ThrowNotFinite(const GaussianFit& fit, const SplatOptions& options) {
+  throw NonFiniteError(fmt::format(
+      "the loss of iteration {} of the Gaussians is not finite; try smaller rates: --set "
+      "splats.mean_rate={}",
+      fit.Steps(), options.mean_rate / 3));
+}
+
 }  // namespace
 
-GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start, double seconds_before,
+GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
                             const GaussianValidation* validation, const GaussianPlan& plan,
                             const std::atomic<bool>& stop, const PipelineListener& listener) {
   const SplatOptions& options = scene.config.splats;
+  FitClock clock(plan, options, start.made.seconds);
   GaussianFit fit(scene.train, scene.facts.has_alpha, std::move(start.state), options, start.near,
                   scene.config.train.seed);
-  const FitClock clock(plan, options, seconds_before);
   GaussianSummary summary;
   const auto model = [&] {
-    return GaussianModel(scene.config, scene.facts, fit.Cloud(), start.near, fit.Steps());
+    return GaussianModel(scene.config, scene.facts, fit.Cloud(), start.near,
+                         {fit.Steps(), clock.Seconds(), start.made.field_step});
   };
   const auto validate = [&] {
     if (validation == nullptr || validation->Empty()) return;
+    const Stopwatch watch;
     summary.psnr = validation->Psnr(fit.Cloud(), start.near);
     summary.reached_target = plan.target_psnr > 0 && summary.psnr >= plan.target_psnr;
     summary.curve.Add(clock.Seconds(), summary.psnr);
+    clock.Reserve(watch.Seconds());
   };
   const auto save_to_resume = [&] {
-    const InterruptedFit interrupted = {fit.State(), clock.Seconds()};
+    const InterruptedFit interrupted = {fit.State(), clock.PlannedSeconds(), plan.steps};
     if (!plan.file.empty()) WriteGaussians(model(), plan.file, &interrupted);
   };
   FitProgress progress = clock.At(fit.Steps());
@@ -83,12 +97,7 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start, dou
   while (progress.fraction < 1 && !summary.reached_target && !stop) {
     const int part_before = part();
     const double loss = fit.Step(progress);
-    if (!std::isfinite(loss)) {
-      throw NonFiniteError(fmt::format(
-          "the loss of iteration {} of the Gaussians is not finite; try smaller rates: --set "
-          "splats.mean_rate={}",
-          fit.Steps(), options.mean_rate / 3));
-    }
+    if (!std::isfinite(loss)) ThrowNotFinite(fit, options);
     progress = clock.At(fit.Steps());
     if (part() > part_before && progress.fraction < 1) validate();
     if (plan.checkpoint_every > 0 && fit.Steps() % plan.checkpoint_every == 0) save_to_resume();
@@ -105,6 +114,17 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start, dou
   summary.gaussians = fit.Cloud().count;
   summary.seconds = clock.Seconds();
   return {model(), summary};
+}
+
+std::optional<GaussianStart> StartAgain(const std::filesystem::path& file, GaussianPlan& plan) {
+  std::optional<InterruptedFit> fit = ReadInterruptedFit(file);
+  if (!fit) return std::nullopt;
+  const GaussianModel model = ReadGaussians(file);
+  plan.steps = fit->planned_steps;
+  plan.seconds = fit->planned_seconds > 0
+                     ? std::max(kLeastFitSeconds, fit->planned_seconds - model.Made().seconds)
+                     : 0;
+  return GaussianStart{std::move(fit->state), model.Near(), model.Made()};
 }
 
 }  // namespace nerf

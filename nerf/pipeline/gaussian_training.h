@@ -11,6 +11,9 @@
 
 namespace nerf {
 
+// Where little or nothing is left of a time budget.
+inline constexpr double kLeastFitSeconds = 1;
+
 // How long a fit takes, and what it writes.
 struct GaussianPlan {
   double seconds = 0;               // of the fit, without what was spent on it before; 0: by steps
@@ -26,12 +29,17 @@ struct GaussianResult {
 };
 
 // Fits Gaussians to the end, or until `stop` is set; then they are written with what resuming
-// needs. By steps the result is the same bits, whether it was interrupted or not.
-//   seconds_before  spent on the fit before it was interrupted
-//   validation      null, or empty: there is none
+// needs. By steps the result is the same bits, whether it was interrupted or not. By time it ends
+// in time, with its last validation.
+//   validation  null, or empty: there is none
 // Throws NonFiniteError naming the iteration; the last file stays.
-GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start, double seconds_before,
+GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
                             const GaussianValidation* validation, const GaussianPlan& plan,
                             const std::atomic<bool>& stop, const PipelineListener& listener);
+
+// Where a fit was interrupted; nullopt: the Gaussians of the file have ended.
+//   plan  gets the steps, or what is left of the seconds, that the fit was planned for
+// Throws InputError naming a damaged file.
+std::optional<GaussianStart> StartAgain(const std::filesystem::path& file, GaussianPlan& plan);
 
 }  // namespace nerf

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "nerf/base/input_error.h"
+#include "nerf/base/temporary_file.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/representation_trial.h"
 #include "nerf/render/non_finite_error.h"
@@ -46,7 +49,7 @@ class Training {
     if (!field_.finished || field_.reached_target || !*record_.makes_splats) {
       return Result(field_.finished);
     }
-    return Result(MakeSplatsOrWarn());
+    return Result(MakeSplatsOrKeepField());
   }
 
  private:
@@ -60,8 +63,19 @@ class Training {
   std::int64_t SplatSteps() const { return std::min<std::int64_t>(splats_.steps, options_.steps); }
 
   void TrainField(double until) {
+    const std::int64_t before = trainer_.Steps();
     field_ = trainer_.Run(
         stop_, [this](const TrainerEvent& event) { listener_(event); }, until);
+    // What `nerf splat` made of the field, and compared with it, was made of an earlier one.
+    if (field_.step == before || !(record_.reached || record_.splats_stand)) return;
+    record_.ForgetReached();
+    WriteRepresentation(record_, run_);
+  }
+
+  // Whether RUN/splats.nerf was made of the field as it is.
+  bool HasItsSplats() const {
+    return fs::exists(GaussiansPath(run_)) &&
+           OpenGaussians(run_)->Made().field_step == trainer_.Steps();
   }
 
   // Why no Gaussians can be made; empty: they can.
@@ -85,17 +99,7 @@ class Training {
       decided.makes_splats = true;
     } else if (options_.representation == Representation::kAuto) {
       decided.why_not = WhyNot();
-      if (decided.why_not.empty()) {
-        TrainField(HasBudget() ? (spent_ + Part(kTrialAt)) / options_.time_budget : kTrialAt);
-        if (field_.finished || stop_) return false;
-        decided.tried = Try();
-        if (stop_) {
-          field_.finished = false;
-          return false;
-        }
-        if (!decided.tried) decided.why_not = "the field has no surfaces yet to begin at";
-        decided.makes_splats = decided.tried && SplatsPromiseMore(*decided.tried);
-      }
+      if (decided.why_not.empty() && !DecideByTrial(decided)) return false;
     }
     record_.makes_splats = decided.makes_splats;
     record_.tried = decided.tried;
@@ -109,80 +113,111 @@ class Training {
     return true;
   }
 
-  std::optional<ComparedPsnr> Try() const {
+  // False where training has ended, or was stopped, before.
+  bool DecideByTrial(RepresentationDecided& decided) {
+    TrainField(HasBudget() ? (spent_ + Part(kTrialAt)) / options_.time_budget : kTrialAt);
+    if (stop_) return false;
+    if (field_.finished) {
+      // With Gaussians the decision was there, and its file was lost.
+      decided.makes_splats = !field_.reached_target && HasItsSplats();
+      return decided.makes_splats;
+    }
+    const Trial trial = Try();
+    if (stop_) {
+      field_.finished = false;
+      return false;
+    }
+    decided.tried = trial.psnr;
+    decided.why_not = trial.why_not;
+    decided.makes_splats = trial.psnr && SplatsPromiseMore(*trial.psnr);
+    return true;
+  }
+
+  Trial Try() const {
     const auto steps =
         static_cast<std::int64_t>(kTrialStepShare * static_cast<double>(SplatSteps()));
     return TryGaussians(trainer_.GetModel(), data_, HasBudget() ? Part(kTrialShare) : 0,
                         std::max(kFewestTrialSteps, steps), stop_, listener_);
   }
 
-  // Where the fit begins, or goes on; nullopt where it has ended before.
-  std::optional<GaussianStart> Start(const GaussianScene& scene, double& seconds_before) const {
-    if (!fs::exists(GaussiansPath(run_))) {
-      const auto field = ModelSnapshot::Copy(trainer_.GetModel(), field_.step);
-      return StartAtSurfaces(*field, scene, [&](std::size_t done) {
-        listener_(SurfacesRendered{done, scene.train.size()});
-      });
-    }
-    const auto interrupted = ReadInterruptedFit(GaussiansPath(run_));
-    if (!interrupted) return std::nullopt;
-    seconds_before = interrupted->seconds;
-    return GaussianStart{interrupted->state, OpenGaussians(run_)->Near()};
-  }
-
   // The field is trained: where Gaussians were not asked for by name, it stands without them.
-  bool MakeSplatsOrWarn() {
+  bool MakeSplatsOrKeepField() {
     const bool is_asked_for = options_.representation == Representation::kSplats;
-    const auto keep_field = [&](const std::exception& error) {
-      listener_(Warning{fmt::format("no Gaussians, the field is kept: {}", error.what())});
-      record_.makes_splats = false;
-      WriteRepresentation(record_, run_);
-      return true;
-    };
+    const bool goes_on = HasItsSplats();
     try {
       return MakeSplats();
     } catch (const InputError& error) {
-      if (is_asked_for || fs::exists(GaussiansPath(run_))) throw;
-      return keep_field(error);
+      if (is_asked_for || goes_on) throw;
+      return KeepField(error);
     } catch (const NonFiniteError& error) {
       if (is_asked_for) throw;
-      return keep_field(error);
+      return KeepField(error);
     }
   }
 
-  void Compare(double splats_psnr) {
-    record_.reached = {field_.validation_psnr, splats_psnr};
+  // Without Gaussians, in the time that was meant for them.
+  bool KeepField(const std::exception& error) {
+    listener_(Warning{fmt::format("no Gaussians, the field is kept: {}", error.what())});
+    if (HasItsSplats()) RemoveAll(GaussiansPath(run_));  // as far as the fit went
+    record_.makes_splats = false;
+    record_.field_seconds = 0;
     WriteRepresentation(record_, run_);
+    if (HasBudget()) {
+      trainer_.EndAt(options_.time_budget);
+      TrainField(1);
+    }
+    return field_.finished;
+  }
+
+  //   psnr  of the Gaussians, dB; ignored where nothing validates
+  void RecordEnd(const GaussianValidation& validation, double psnr) {
+    if (validation.Empty()) {
+      record_.splats_stand = true;
+    } else {
+      record_.reached = {field_.validation_psnr, psnr};
+      splats_reached_target_ = options_.target_psnr > 0 && psnr >= options_.target_psnr;
+    }
+    WriteRepresentation(record_, run_);
+  }
+
+  // Of a fit that ended in an earlier command, maybe before it was compared.
+  double PsnrOfEnded(const GaussianValidation& validation) const {
+    if (validation.Empty()) return 0;
+    if (record_.reached) return record_.reached->splats;
+    const auto model = OpenGaussians(run_);
+    return validation.Psnr(model->Cloud(), model->Near());
   }
 
   // False where it was stopped.
   bool MakeSplats() {
     const GaussianScene scene = GaussianSceneOf(trainer_.GetModel(), data_);
     const GaussianValidation validation(scene, data_);
-    double seconds_before = 0;
-    std::optional<GaussianStart> start = Start(scene, seconds_before);
-    if (!start) {  // it ended, but was interrupted before it was compared
-      const auto model = OpenGaussians(run_);
-      if (!record_.reached && !validation.Empty()) {
-        Compare(validation.Psnr(model->Cloud(), model->Near()));
-      }
-      return true;
-    }
     GaussianPlan plan;
     plan.steps = SplatSteps();
+    std::optional<GaussianStart> start;
+    if (HasItsSplats()) {
+      start = StartAgain(GaussiansPath(run_), plan);
+      if (!start) {
+        RecordEnd(validation, PsnrOfEnded(validation));
+        return true;
+      }
+    } else {
+      const auto field = ModelSnapshot::Copy(trainer_.GetModel(), trainer_.Steps());
+      start = StartAtSurfaces(*field, scene, stop_, [&](std::size_t done) {
+        listener_(SurfacesRendered{done, scene.train.size()});
+      });
+      if (!start) return false;
+    }
     plan.file = GaussiansPath(run_);
     plan.checkpoint_every = options_.checkpoint_every;
     plan.target_psnr = options_.target_psnr;
     if (HasBudget()) {
-      const double left =
-          options_.time_budget - kEndSeconds - seconds_before - trainer_.SpentSeconds();
-      plan.seconds = std::max(1.0, left);
+      const double spent = trainer_.SpentSeconds() + start->made.seconds;
+      plan.seconds = std::max(kLeastFitSeconds, options_.time_budget - kEndSeconds - spent);
     }
     const GaussianSummary fit =
-        FitGaussians(scene, std::move(*start), seconds_before, &validation, plan, stop_, listener_)
-            .summary;
-    if (fit.finished && !validation.Empty()) Compare(fit.psnr);
-    splats_reached_target_ = fit.reached_target;
+        FitGaussians(scene, std::move(*start), &validation, plan, stop_, listener_).summary;
+    if (fit.finished) RecordEnd(validation, fit.psnr);
     listener_(GaussiansEnded{fit, record_.reached});
     return fit.finished;
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -46,33 +45,40 @@ GaussianScene ReducedScene(const Model& field, const Dataset& data) {
   return scene;
 }
 
-// What a view shows on the display background: [pixels,3].
-std::vector<float> Shown(const TargetPicture& target, const Eigen::Vector3f& background) {
-  std::vector<float> rgb;
+// The pixels of a view that are compared, one after another.
+struct Pixels {
+  std::vector<float> shown, drawn;  // [P,3] on the display background
+  std::vector<float> opacity;       // [P] drawn
+  std::vector<float> weight;        // [P]
+};
+
+Pixels PixelsOf(const TargetPicture& target, const RenderedView& drawn,
+                const Eigen::Vector3f& background) {
+  Pixels pixels;
   for (int y = 0; y < target.height; ++y) {
     for (int x = 0; x < target.width; ++x) {
+      const float weight = target.Row(TargetPicture::kWeight, y)[x];
+      if (weight == 0) continue;
       const float alpha = target.Row(TargetPicture::kOpacity, y)[x];
       for (int c = 0; c < 3; ++c) {
-        rgb.push_back(alpha * target.Row(c, y)[x] + (1 - alpha) * background[c]);
+        pixels.shown.push_back(alpha * target.Row(c, y)[x] + (1 - alpha) * background[c]);
+        pixels.drawn.push_back(drawn.rgb.At(x, y)[c]);
       }
+      pixels.opacity.push_back(*drawn.opacity.At(x, y));
+      pixels.weight.push_back(weight);
     }
   }
-  return rgb;
+  return pixels;
 }
 
-// PSNR, dB, of the pixels that a view stores.
-double Psnr(std::span<const float> drawn, std::span<const float> shown,
-            const TargetPicture& target) {
+double Psnr(const Pixels& pixels) {
   double error = 0, weight = 0;
-  for (int y = 0; y < target.height; ++y) {
-    for (int x = 0; x < target.width; ++x) {
-      const double w = target.Row(TargetPicture::kWeight, y)[x];
-      weight += 3 * w;
-      for (int c = 0; c < 3; ++c) {
-        const std::size_t at = 3 * (static_cast<std::size_t>(y) * target.width + x) + c;
-        const double d = std::clamp(drawn[at], 0.0f, 1.0f) - std::clamp(shown[at], 0.0f, 1.0f);
-        error += w * d * d;
-      }
+  for (std::size_t p = 0; p < pixels.weight.size(); ++p) {
+    weight += 3 * pixels.weight[p];
+    for (std::size_t at = 3 * p; at < 3 * p + 3; ++at) {
+      const double d =
+          std::clamp(pixels.drawn[at], 0.0f, 1.0f) - std::clamp(pixels.shown[at], 0.0f, 1.0f);
+      error += pixels.weight[p] * d * d;
     }
   }
   return -10 * std::log10(std::max(error, 1e-10) / std::max(weight, 1e-10));
@@ -84,41 +90,42 @@ double MeanPsnr(const SceneModel& model, const std::vector<TargetView>& views) {
   const Eigen::Vector3f background = DisplayBackground(facts.has_alpha);
   double sum = 0;
   for (const TargetView& view : views) {
-    const TargetPicture target = TargetOf(view);
-    const std::vector<float> shown = Shown(target, background);
-    RenderedView drawn = model.Render(
+    const RenderedView drawn = model.Render(
         {view.camera, facts.normalized_from_world.WorldFromCamera(view.normalized_from_camera)});
+    Pixels pixels = PixelsOf(TargetOf(view), drawn, background);
     if (model.GetConfig().effects.exposure) {
-      FitExposure(drawn.rgb.pixels, drawn.opacity.pixels, shown, {background.data(), 3},
+      FitExposure(pixels.drawn, pixels.opacity, pixels.shown, {background.data(), 3},
                   facts.encoding);
     }
-    sum += Psnr(drawn.rgb.pixels, shown, target);
+    sum += Psnr(pixels);
   }
   return sum / static_cast<double>(views.size());
 }
 
 }  // namespace
 
-std::optional<ComparedPsnr> TryGaussians(const Model& field, const Dataset& data, double seconds,
-                                         std::int64_t steps, const std::atomic<bool>& stop,
-                                         const PipelineListener& listener) {
+Trial TryGaussians(const Model& field, const Dataset& data, double seconds, std::int64_t steps,
+                   const std::atomic<bool>& stop, const PipelineListener& listener) {
   const Stopwatch watch;
   const auto snapshot = ModelSnapshot::Copy(field, 0);
   const GaussianScene scene = ReducedScene(field, data);
   try {
-    GaussianStart start = StartAtSurfaces(*snapshot, scene, [](std::size_t) {});
+    std::optional<GaussianStart> start =
+        StartAtSurfaces(*snapshot, scene, stop, [](std::size_t) {});
+    if (!start) return {};
     GaussianPlan plan;
     plan.steps = steps;
     if (seconds > 0) plan.seconds = std::max(kLeastFit * seconds, seconds - watch.Seconds());
     const GaussianResult result =
-        FitGaussians(scene, std::move(start), 0, nullptr, plan, stop, listener);
-    if (!result.summary.finished) return std::nullopt;
-    return ComparedPsnr{MeanPsnr(*snapshot, scene.validation),
-                        MeanPsnr(result.model, scene.validation)};
-  } catch (const InputError&) {
-    return std::nullopt;  // no surfaces
-  } catch (const NonFiniteError&) {
-    return std::nullopt;
+        FitGaussians(scene, std::move(*start), nullptr, plan, stop, listener);
+    if (!result.summary.finished) return {};
+    return {ComparedPsnr{MeanPsnr(*snapshot, scene.validation),
+                         MeanPsnr(result.model, scene.validation)},
+            ""};
+  } catch (const InputError& error) {
+    return {std::nullopt, error.what()};  // no surfaces
+  } catch (const NonFiniteError& error) {
+    return {std::nullopt, error.what()};
   }
 }
 

@@ -88,11 +88,37 @@ std::vector<ColoredPoint> OneInEachVoxel(const std::vector<ColoredPoint>& points
   return kept;
 }
 
+// The least distance that views see, normalized units.
+double NearestOf(const std::vector<DepthView>& views) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const DepthView& view : views) {
+    std::vector<float> distances;
+    for (const float distance : view.rendered.depth.pixels) {
+      if (distance > 0) distances.push_back(distance);
+    }
+    if (distances.empty()) continue;
+    nearest = std::min<double>(nearest, Quantile(distances, kNearest));
+  }
+  return nearest;
+}
+
+// The smallest voxels that leave no more than wanted.
+double VoxelSizeFor(const std::vector<ColoredPoint>& points, std::int64_t wanted) {
+  double low = std::log(kSmallestVoxel), high = std::log(kLargestVoxel);
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = (low + high) / 2;
+    const auto left = static_cast<std::int64_t>(OneInEachVoxel(points, std::exp(middle)).size());
+    (left > wanted ? low : high) = middle;
+  }
+  return std::exp(high);
+}
+
 }  // namespace
 
-SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<TargetView>& views,
-                                std::int64_t wanted,
-                                const std::function<void(std::size_t)>& progress) {
+std::optional<SurfacePoints> FindSurfacePoints(const SceneModel& model,
+                                               const std::vector<TargetView>& views,
+                                               std::int64_t wanted, const std::atomic<bool>& stop,
+                                               const std::function<void(std::size_t)>& progress) {
   double pixels = 0;
   for (const TargetView& view : views) pixels += static_cast<double>(PixelCount(view.camera));
   const double reduction = std::sqrt(pixels / (kPixelsForPoint * static_cast<double>(wanted)));
@@ -106,6 +132,7 @@ SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<Targe
                         model.Render({camera, frame.WorldFromCamera(view.normalized_from_camera),
                                       kDepthQuality})});
     progress(rendered.size());
+    if (stop) return std::nullopt;
   }
   std::vector<std::vector<ColoredPoint>> of_view(rendered.size());
   ParallelForEach(static_cast<std::int64_t>(rendered.size()), [&](std::int64_t i) {
@@ -113,25 +140,7 @@ SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<Targe
   });
   std::vector<ColoredPoint> points;
   for (const auto& own : of_view) points.insert(points.end(), own.begin(), own.end());
-  SurfacePoints found;
-  found.nearest = std::numeric_limits<double>::infinity();
-  for (const DepthView& view : rendered) {
-    std::vector<float> distances;
-    for (const float distance : view.rendered.depth.pixels) {
-      if (distance > 0) distances.push_back(distance);
-    }
-    if (distances.empty()) continue;
-    found.nearest = std::min<double>(found.nearest, Quantile(distances, kNearest));
-  }
-  // The smallest voxels that leave no more than wanted.
-  double low = std::log(kSmallestVoxel), high = std::log(kLargestVoxel);
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = (low + high) / 2;
-    const auto left = static_cast<std::int64_t>(OneInEachVoxel(points, std::exp(middle)).size());
-    (left > wanted ? low : high) = middle;
-  }
-  found.points = OneInEachVoxel(points, std::exp(high));
-  return found;
+  return SurfacePoints{OneInEachVoxel(points, VoxelSizeFor(points, wanted)), NearestOf(rendered)};
 }
 
 }  // namespace nerf

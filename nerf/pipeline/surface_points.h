@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "nerf/model/scene_model.h"
@@ -20,8 +22,10 @@ struct SurfacePoints {
 // of a size that leaves about as many as wanted.
 //   views     poses and cameras; rendered at a resolution that gives several pixels for each point
 //   progress  called with the number of views done
-SurfacePoints FindSurfacePoints(const SceneModel& model, const std::vector<TargetView>& views,
-                                std::int64_t wanted,
-                                const std::function<void(std::size_t)>& progress);
+//   returns   nullopt where it was stopped
+std::optional<SurfacePoints> FindSurfacePoints(const SceneModel& model,
+                                               const std::vector<TargetView>& views,
+                                               std::int64_t wanted, const std::atomic<bool>& stop,
+                                               const std::function<void(std::size_t)>& progress);
 
 }  // namespace nerf

@@ -41,6 +41,8 @@ double Trainer::TakeSteps(int steps) {
 
 void Trainer::EndAt(double seconds) { state_->progress.EndAt(seconds); }
 
+std::int64_t Trainer::Steps() const { return state_->step; }
+
 double Trainer::SpentSeconds() const { return state_->progress.SpentSeconds(); }
 
 TrainSummary Trainer::Run(const std::atomic<bool>& stop, const TrainerListener& listener,

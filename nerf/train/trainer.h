@@ -67,6 +67,8 @@ class Trainer {
                    double until = 1);
   // Ends a training with a time budget earlier or later: at these seconds since it began.
   void EndAt(double seconds);
+  // Taken so far.
+  std::int64_t Steps() const;
   // Since it began, with what was spent before.
   double SpentSeconds() const;
 
