@@ -17,12 +17,12 @@
 #include "nerf/commands/ply_scene.h"
 #include "nerf/commands/shots.h"
 #include "nerf/commands/threads.h"
+#include "nerf/commands/view_files.h"
 #include "nerf/effects/exposure_fit.h"
 #include "nerf/geometry/rays.h"
 #include "nerf/image/image_io.h"
 #include "nerf/model/quality_probe.h"
 #include "nerf/model/run_folder.h"
-#include "nerf/output/color_map.h"
 #include "nerf/output/video.h"
 #include "nerf/render/image_renderer.h"
 #include "nerf/scene/dataset.h"
@@ -38,9 +38,7 @@ struct RenderArguments {
   ShotOptions shots;
   std::string with = "auto";
   std::optional<double> fps;
-  std::string format = "png";
-  bool depth = false;
-  bool opacity = false;
+  ViewFiles files;
   bool no_video = false;
   bool preview = false;
   double quality = 1;
@@ -48,24 +46,6 @@ struct RenderArguments {
   std::string exposure_of;
   int threads = 0;
 };
-
-void WriteShot(const RenderedView& view, const SceneFacts& scene, const RenderArguments& arguments,
-               const fs::path& stem) {
-  WriteImage(stem.string() + "." + arguments.format, view.rgb);
-  if (arguments.depth) {
-    Image depth = view.depth;
-    for (float& d : depth.pixels) {
-      d = static_cast<float>(scene.normalized_from_world.LengthWorldFromNormalized(d));
-    }
-    WriteImage(stem.string() + ".depth.exr", depth);
-    WriteImage(stem.string() + ".depth.png", ColorizeDepth(depth, view.opacity));
-  }
-  if (arguments.opacity) {
-    Image opacity = view.opacity;
-    opacity.encoding = ColorEncoding::kSrgb;  // a mask: values are written unchanged
-    WriteImage(stem.string() + ".opacity.png", opacity);
-  }
-}
 
 // Applies the exposure of a photograph to a view, except to its background contribution.
 void Expose(const std::array<float, 3>& gains, const Eigen::Vector3f& background,
@@ -159,23 +139,24 @@ void RenderShots(const OpenedRun& run, bool uses_splats, const ShotList& list,
     for (const int factor : {8, 4}) {
       if (!arguments.preview) break;
       WriteImage(
-          output / (shot.name + "." + arguments.format),
+          output / (shot.name + "." + arguments.files.format),
           RenderPreview(*run.model->Renderer(quality), shot.camera, factor,
                         scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
                         background, scene.encoding));
     }
     RenderedView view =
         model->Render({shot.camera, shot.world_from_camera, quality,
-                       [&](std::int64_t of_view) { progress.Update(done + of_view, shot.name); }});
+                       [&](std::int64_t of_view) { progress.Update(done + of_view, shot.name); },
+                       arguments.files.surface});
     done += static_cast<std::int64_t>(shot.camera.width) * shot.camera.height;
     if (gains) Expose(*gains, background, view);
-    WriteShot(view, scene, arguments, output / shot.name);
+    WriteView(view, scene, arguments.files, output / shot.name);
   }
 }
 
 void WriteFilm(const ShotList& list, const RenderArguments& arguments, const fs::path& output) {
   if (!list.frames_per_second || arguments.no_video) return;
-  if (arguments.format != "png" || !FfmpegIsInstalled()) {
+  if (arguments.files.format != "png" || !FfmpegIsInstalled()) {
     fmt::print("no film.mp4: it needs --format png and the ffmpeg program\n");
     return;
   }
@@ -199,8 +180,8 @@ void RenderPly(const RenderArguments& arguments) {
   const std::shared_ptr<const GaussianModel> model = OpenPly(arguments.run);
   MakeOutputFolder(arguments.output);
   for (const Shot& shot : list.shots) {
-    WriteShot(model->Render({shot.camera, shot.world_from_camera}), model->Scene(), arguments,
-              fs::path(arguments.output) / shot.name);
+    WriteView(model->Render({shot.camera, shot.world_from_camera, 1, {}, arguments.files.surface}),
+              model->Scene(), arguments.files, fs::path(arguments.output) / shot.name);
   }
   fmt::print("{} views in {}\n", list.shots.size(), arguments.output);
   WriteFilm(list, arguments, arguments.output);
@@ -218,6 +199,9 @@ void RunRender(const RenderArguments& arguments) {
   const bool is_field = arguments.with == "auto" && (arguments.preview || arguments.quality != 1);
   const bool uses_splats = !is_field && UsesSplats(arguments.with, arguments.run);
   ChosenModel(run, uses_splats, arguments.run);  // throws before a folder is created
+  if (arguments.files.surface && !uses_splats) {
+    throw InputError("--surface: median depth and normals are of Gaussians; use --with splats");
+  }
   if (!arguments.exposure_of.empty()) GainsOf(run.model->GetModel(), arguments.exposure_of);
   const ShotList list = ChooseShots(run, arguments.shots, arguments.run);
   const fs::path output = arguments.output.empty()
@@ -257,12 +241,7 @@ void AddRenderCommand(CLI::App& app) {
   command->add_option(
       "--downscale", arguments->shots.downscale,
       "reduce the resolution by this factor [as trained; 1 for --pose and a path file]");
-  command->add_option("--format", arguments->format, "png, jpg, or exr (linear)")
-      ->check(CLI::IsMember({"png", "jpg", "exr"}))
-      ->capture_default_str();
-  command->add_flag("--depth", arguments->depth,
-                    "also write depth along the ray: EXR in the input's units, and a colour map");
-  command->add_flag("--opacity", arguments->opacity, "also write opacity, as PNG");
+  AddViewFiles(*command, arguments->files);
   command->add_flag("--preview", arguments->preview,
                     "write each image at coarse resolution first, then finer, then full");
   command->add_flag("--no-video", arguments->no_video, "do not make an MP4 of a path");

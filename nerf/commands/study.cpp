@@ -43,7 +43,7 @@ void PrintFront(const nlohmann::json& results) {
   }
   for (const auto& [seconds, setting] : by_seconds) {
     const auto& exact = setting->at("qualities").at(0);
-    fmt::print("{:<18} {:>8.1f} {:>9.2f} {:>8.4f} {:>11.2f}\n",
+    fmt::print("{:<18} {:>8.1f} {:>9.2f} {:>8.4f} {:>11.3f}\n",
                setting->at("name").get<std::string>(), seconds, exact.at("psnr").get<double>(),
                exact.at("ssim").get<double>(), exact.at("seconds_per_frame").get<double>());
   }

@@ -11,74 +11,12 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "nerf/kernels/gaussian_tile-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace nerf::kernels {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, 16>;
-using V = hn::Vec<D>;
-
-constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
-constexpr int kVectors = kTilePixels / kLanes;  // of a tile
-// Vectors beside each other, and rows of pixels in a vector.
-constexpr int kAcross = kLanes < kTileWidth ? kTileWidth / kLanes : 1;
-constexpr int kRowsOfVector = kLanes > kTileWidth ? kLanes / kTileWidth : 1;
-constexpr int kBands = kVectors / kAcross;
-static_assert(kBands <= 32);
-
-HWY_INLINE V Constant(float value) { return hn::Set(D(), value); }
-
-// 2^x for x in [-126, 0], relative error 4e-6: a polynomial on [-1/2, 1/2].
-HWY_INLINE V Exp2(V x) {
-  const D d;
-  const hn::RebindToSigned<D> di;
-  const V rounded = hn::Round(x), t = x - rounded;
-  V p = hn::MulAdd(t, Constant(0.00133335581f), Constant(0.00961812911f));
-  p = hn::MulAdd(t, p, Constant(0.0555041087f));
-  p = hn::MulAdd(t, p, Constant(0.240226507f));
-  p = hn::MulAdd(t, p, Constant(0.693147181f));
-  p = hn::MulAdd(t, p, Constant(1.0f));
-  const auto exponent = hn::ShiftLeft<23>(hn::ConvertTo(di, rounded));
-  return hn::BitCast(d, hn::Add(hn::BitCast(di, p), exponent));
-}
-
-// The centres of the pixels of the vectors of a tile, from its corner.
-struct PixelCentres {
-  V x[kAcross];
-  V y;  // of the first band
-};
-
-HWY_INLINE PixelCentres CentresOfTile(const Tile& tile) {
-  alignas(64) float x[kAcross][kLanes];
-  alignas(64) float y[kLanes];
-  for (int h = 0; h < kAcross; ++h) {
-    for (int l = 0; l < kLanes; ++l) {
-      x[h][l] = static_cast<float>(tile.x + (h * kLanes + l) % kTileWidth) + 0.5f;
-    }
-  }
-  for (int l = 0; l < kLanes; ++l) {
-    y[l] = static_cast<float>(tile.y + (kAcross > 1 ? 0 : l / kTileWidth)) + 0.5f;
-  }
-  PixelCentres centres;
-  for (int h = 0; h < kAcross; ++h) centres.x[h] = hn::Load(D(), x[h]);
-  centres.y = hn::Load(D(), y);
-  return centres;
-}
-
-// The bands that a Gaussian may touch, a bit for each.
-HWY_INLINE std::uint32_t BandsOf(const ProjectedGaussian& g, const Tile& tile) {
-  const float centre = g.y - static_cast<float>(tile.y) - 0.5f;
-  // Bounded first: a Gaussian may be larger than an int holds.
-  const float top = std::clamp(std::ceil(centre - g.radius_y), 0.0f, 1.0f * kTileHeight);
-  const float bottom = std::clamp(std::floor(centre + g.radius_y), -1.0f, kTileHeight - 1.0f);
-  if (top > bottom) return 0;
-  const int first = static_cast<int>(top) / kRowsOfVector;
-  const int last = static_cast<int>(bottom) / kRowsOfVector;
-  return (~0u << first) & (~0u >> (31 - last));
-}
-
-constexpr std::uint32_t kAllBands = kBands == 32 ? ~0u : (1u << kBands) - 1;
 
 std::int64_t ForwardImpl(const ProjectedGaussian* gaussians, const Tile& tile,
                          TilePicture& picture) {
@@ -102,19 +40,14 @@ std::int64_t ForwardImpl(const ProjectedGaussian* gaussians, const Tile& tile,
     const ProjectedGaussian& g = gaussians[tile.entries[k].gaussian];
     const std::uint32_t bands = BandsOf(g, tile);
     const V r = Constant(g.rgb[0]), gr = Constant(g.rgb[1]), b = Constant(g.rgb[2]);
-    const V far = Constant(g.distance), least = Constant(g.least), yy = Constant(g.yy);
+    const V far = Constant(g.distance), least = Constant(g.least);
     bool any_ended = false;
     for (int h = 0; h < kAcross; ++h) {
-      const V dx = centres.x[h] - Constant(g.x);
-      const V peak = Constant(g.log2_opacity);
-      const V of_x = hn::MulAdd(dx * dx, Constant(g.xx), peak);
-      const V linear = dx * Constant(g.xy);
+      const Column column(g, centres.x[h] - Constant(g.x));
       for (std::uint32_t rest = bands & alive[h]; rest != 0; rest &= rest - 1) {
         const int band = __builtin_ctz(rest);
         const int at = (band * kAcross + h) * kLanes;
-        const V dy = centres.y + Constant(static_cast<float>(band * kRowsOfVector) - g.y);
-        // Never above the peak: far from the mean of a needle, rounding could bring it there.
-        const V log2_alpha = hn::Min(hn::MulAdd(dy, hn::MulAdd(dy, yy, linear), of_x), peak);
+        const V log2_alpha = column.Log2Alpha(OffsetY(g, centres, band));
         const V alpha = hn::IfThenElseZero(hn::Gt(log2_alpha, least), Exp2(log2_alpha));
         const V before = hn::Load(d, transmittance + at);
         const V weight = alpha * before;
@@ -139,7 +72,40 @@ std::int64_t ForwardImpl(const ProjectedGaussian* gaussians, const Tile& tile,
   return static_cast<std::int64_t>(count);
 }
 
-HWY_INLINE float Sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE void StoreSums(V a, V b, V c, V e, float* sums) {
+  for (const V v : {a, b, c, e}) *sums++ = hn::GetLane(v);
+}
+
+#else
+
+// The sum of the 128-bit blocks of a vector.
+template <class DV, class Vec>
+HWY_INLINE auto SumOfBlocks([[maybe_unused]] DV d, Vec v) {
+  if constexpr (hn::MaxLanes(DV()) > 4) {
+    const hn::Half<DV> half;
+    return SumOfBlocks(half, hn::Add(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
+  } else {
+    return v;
+  }
+}
+
+// Writes the sums over the lanes of four vectors at once, which takes half the instructions of one
+// after another.
+HWY_INLINE void StoreSums(V a, V b, V c, V e, float* sums) {
+  const D d;
+  const hn::Repartition<std::uint64_t, D> pairs;
+  // In each block: a0+a2, b0+b2, a1+a3, b1+b3.
+  const V ab = hn::InterleaveLower(d, a, b) + hn::InterleaveUpper(d, a, b);
+  const V ce = hn::InterleaveLower(d, c, e) + hn::InterleaveUpper(d, c, e);
+  const auto ab_pairs = hn::BitCast(pairs, ab), ce_pairs = hn::BitCast(pairs, ce);
+  const V abce = hn::BitCast(d, hn::InterleaveLower(pairs, ab_pairs, ce_pairs)) +
+                 hn::BitCast(d, hn::InterleaveUpper(pairs, ab_pairs, ce_pairs));
+  hn::Store(SumOfBlocks(d, abce), hn::Full128<float>(), sums);
+}
+
+#endif
 
 HWY_INLINE V LoadAt(const std::array<float, kTilePixels>& values, int at) {
   return hn::Load(D(), values.data() + at);
@@ -160,8 +126,11 @@ struct MomentSums {
     xy = hn::MulAdd(of_column_y, dx, xy);
   }
   HWY_INLINE GaussianMoments Total() const {
-    return {Sum(sum),     Sum(x), Sum(y), Sum(xx), Sum(xy), Sum(yy), {Sum(r), Sum(g), Sum(b)},
-            Sum(distance)};
+    alignas(16) float s[12];
+    StoreSums(sum, x, y, xx, s);
+    StoreSums(xy, yy, r, g, s + 4);
+    StoreSums(b, distance, b, distance, s + 8);
+    return {s[0], s[1], s[2], s[3], s[4], s[5], {s[6], s[7], s[8]}, s[9]};
   }
 
   V sum, x, y, xx, xy, yy, r, g, b, distance;
@@ -196,16 +165,12 @@ HWY_INLINE void BackwardColumn(const ProjectedGaussian& g, const PixelCentres& c
   const V one = Constant(1), stop = Constant(kStopTransmittance), least = Constant(g.least);
   const V red = Constant(g.rgb[0]), green = Constant(g.rgb[1]), blue = Constant(g.rgb[2]);
   const V far = Constant(g.distance), dx = centres.x[h] - Constant(g.x);
-  const V peak = Constant(g.log2_opacity);
-  const V of_x = hn::MulAdd(dx * dx, Constant(g.xx), peak);
-  const V linear = dx * Constant(g.xy), yy = Constant(g.yy);
-  V column = hn::Zero(d), column_y = hn::Zero(d);
+  const Column column(g, dx);
+  V sum = hn::Zero(d), sum_y = hn::Zero(d);
   for (std::uint32_t rest = bands & pixels.alive[h]; rest != 0; rest &= rest - 1) {
     const int band = __builtin_ctz(rest);
     const int at = (band * kAcross + h) * kLanes;
-    const V dy = centres.y + Constant(static_cast<float>(band * kRowsOfVector) - g.y);
-    // Never above the peak: far from the mean of a needle, rounding could bring it there.
-    const V log2_alpha = hn::Min(hn::MulAdd(dy, hn::MulAdd(dy, yy, linear), of_x), peak);
+    const V dy = OffsetY(g, centres, band), log2_alpha = column.Log2Alpha(dy);
     const auto counts = hn::Gt(log2_alpha, least);
     if (hn::AllFalse(d, counts)) continue;
     const V alpha = hn::IfThenElseZero(counts, Exp2(log2_alpha));
@@ -222,14 +187,14 @@ HWY_INLINE void BackwardColumn(const ProjectedGaussian& g, const PixelCentres& c
     sums.g = hn::MulAdd(weight, g_g, sums.g);
     sums.b = hn::MulAdd(weight, g_b, sums.b);
     sums.distance = hn::MulAdd(weight, g_far, sums.distance);
-    column = column + by_log;
-    column_y = column_y + by_log_y;
+    sum = sum + by_log;
+    sum_y = sum_y + by_log_y;
     sums.yy = hn::MulAdd(by_log_y, dy, sums.yy);
     const V after = before - weight;
     hn::Store(after, d, pixels.transmittance + at);
     if (hn::AllFalse(d, hn::Gt(after, stop))) pixels.alive[h] &= ~(1u << band);
   }
-  sums.AddColumn(column, column_y, dx);
+  sums.AddColumn(sum, sum_y, dx);
 }
 
 void BackwardImpl(const ProjectedGaussian* gaussians, const Tile& tile, const TilePicture& picture,

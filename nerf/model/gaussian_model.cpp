@@ -1,5 +1,6 @@
 #include "nerf/model/gaussian_model.h"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -51,6 +52,16 @@ GaussianModel ModelOf(const Checkpoint& checkpoint, const std::filesystem::path&
   }
 }
 
+void AddSurface(const GaussianSurface& surface, RenderedView& view) {
+  const int width = view.rgb.width, height = view.rgb.height;
+  view.median_depth = Image(width, height, 1, ColorEncoding::kLinear);
+  view.normal = Image(width, height, 3, ColorEncoding::kLinear);
+  view.median_depth.pixels = surface.median_distance;
+  for (std::size_t p = 0; p < surface.normal.size(); ++p) {
+    std::ranges::copy(surface.normal[p], view.normal.pixels.begin() + 3 * static_cast<long>(p));
+  }
+}
+
 }  // namespace
 
 GaussianModel::GaussianModel(Config config, SceneFacts scene, GaussianCloud cloud, double near,
@@ -70,8 +81,8 @@ RenderedView GaussianModel::Render(const ViewRequest& view) const {
       scene_.normalized_from_world.NormalizedFromCamera(view.world_from_camera);
   const Eigen::Vector3f background = DisplayBackground(scene_.has_alpha);
   GaussianRenderer renderer;
-  const GaussianPicture& picture =
-      renderer.Draw(MakeGaussianCamera(view.camera, pose, near_), cloud_.Parameters());
+  const kernels::GaussianCamera camera = MakeGaussianCamera(view.camera, pose, near_);
+  const GaussianPicture& picture = renderer.Draw(camera, cloud_.Parameters());
   RenderedView rendered;
   rendered.rgb = Image(picture.width, picture.height, 3, scene_.encoding);
   rendered.opacity = Image(picture.width, picture.height, 1, ColorEncoding::kLinear);
@@ -89,6 +100,7 @@ RenderedView GaussianModel::Render(const ViewRequest& view) const {
       *rendered.depth.At(x, y) = opacity > kLeastOpacity ? distance[x] / opacity : 0;
     }
   }
+  if (view.surface) AddSurface(renderer.FindSurface(camera, cloud_.Parameters()), rendered);
   rendered.samples = renderer.Visible();
   if (view.progress) view.progress(std::int64_t{picture.width} * picture.height);
   return rendered;

@@ -18,6 +18,7 @@ struct ViewRequest {
   double quality = 1;                   // 0 (fast) to 1 (exact): RenderQuality::Of
   // Called with the number of pixels done; throw from it to stop.
   std::function<void(std::int64_t)> progress = {};
+  bool surface = false;  // also median depth and normals, of Gaussians only
 };
 
 // A trained representation of a scene: the neural field, or Gaussians. Immutable; all members are

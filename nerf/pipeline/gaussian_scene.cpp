@@ -1,8 +1,12 @@
 #include "nerf/pipeline/gaussian_scene.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 
+#include "nerf/base/available_memory.h"
 #include "nerf/base/input_error.h"
+#include "nerf/effects/effects.h"
 #include "nerf/model/refined_poses.h"
 #include "nerf/pipeline/surface_points.h"
 
@@ -12,6 +16,21 @@ namespace {
 // Gaussians that are nearer to a camera than this share of what it sees are not drawn: they would
 // hang in front of it, to explain one photograph.
 constexpr double kNearShare = 0.5;
+
+// Of a Gaussian beside its parameters and their two moments: projections, and what it has in about
+// ten tiles.
+constexpr double kBytesBeside = 700;
+
+void RequireMemory(const SplatOptions& options) {
+  const double each = 3.0 * sizeof(float) * kernels::GaussianRows(options.harmonics_order);
+  const double needed = 1e-6 * options.count * (each + kBytesBeside);
+  const double available = AvailableMegabytes();
+  if (needed <= available) return;
+  throw InputError(
+      "splats.count {}: the fit needs about {:.0f} MB, and {:.0f} MB are available; "
+      "use at most {:.0f}",
+      options.count, needed, available, options.count * available / needed);
+}
 
 std::vector<TargetView> RefinedViews(const Model& field, const std::vector<View>& views,
                                      bool has_gains) {
@@ -41,10 +60,21 @@ GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
   return scene;
 }
 
+void WarnOfFieldsEffects(const Config& config, const PipelineListener& listener) {
+  const auto warn = [&](const EffectDescriptor& effect) {
+    listener(Warning{
+        fmt::format("{} acts on the field, at whose surfaces Gaussians begin, but not on their fit",
+                    effect.name)});
+  };
+  if (config.effects.depth_supervision) warn(kDepthSupervisionEffect);
+  if (config.effects.robust) warn(kRobustEffect);
+}
+
 std::optional<GaussianStart> StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
                                              const std::atomic<bool>& stop,
                                              const std::function<void(std::size_t)>& progress) {
   const SplatOptions& options = scene.config.splats;
+  RequireMemory(options);
   const std::optional<SurfacePoints> surfaces =
       FindSurfacePoints(field, scene.train, options.count, stop, progress);
   if (!surfaces) return std::nullopt;

@@ -9,6 +9,7 @@
 #include "nerf/config/config.h"
 #include "nerf/model/gaussian_model.h"
 #include "nerf/model/snapshot.h"
+#include "nerf/pipeline/events.h"
 #include "nerf/scene/dataset.h"
 
 namespace nerf {
@@ -25,6 +26,9 @@ struct GaussianScene {
 //   data  must outlive the result
 GaussianScene GaussianSceneOf(const Model& field, const Dataset& data);
 
+// Reports the effects of a configuration that only the training of the field simulates.
+void WarnOfFieldsEffects(const Config& config, const PipelineListener& listener);
+
 // Where a fit begins.
 struct GaussianStart {
   GaussianFitState state;
@@ -35,7 +39,7 @@ struct GaussianStart {
 // Begins at the surfaces that a field renders (FindSurfacePoints).
 //   progress  called with the number of views done, of scene.train
 //   returns   nullopt where it was stopped
-// Throws InputError where its views agree on no surface.
+// Throws InputError where its views agree on no surface, or where there is too little memory.
 std::optional<GaussianStart> StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
                                              const std::atomic<bool>& stop,
                                              const std::function<void(std::size_t)>& progress);

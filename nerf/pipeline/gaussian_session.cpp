@@ -64,6 +64,7 @@ std::optional<GaussianSession> MakeGaussians(const GaussianRequest& request, con
   const GaussianScene scene = GaussianSceneOf(model, data);
   const GaussianValidation validation(scene, data);
   if (!start) {
+    WarnOfFieldsEffects(scene.config, listener);
     start = StartAtSurfaces(*run.model, scene, stop, [&](std::size_t done) {
       listener(SurfacesRendered{done, data.train.size()});
     });

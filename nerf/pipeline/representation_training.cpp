@@ -202,6 +202,7 @@ class Training {
         return true;
       }
     } else {
+      WarnOfFieldsEffects(scene.config, listener_);
       const auto field = ModelSnapshot::Copy(trainer_.GetModel(), trainer_.Steps());
       start = StartAtSurfaces(*field, scene, stop_, [&](std::size_t done) {
         listener_(SurfacesRendered{done, scene.train.size()});

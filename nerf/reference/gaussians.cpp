@@ -72,13 +72,18 @@ GaussianOnScreen Project(const Gaussian& gaussian, const GaussianView& view) {
   const Eigen::Matrix2d covariance = projected * projected.transpose();
   on_screen.covariance =
       covariance + static_cast<double>(kernels::kPixelVariance) * Eigen::Matrix2d::Identity();
-  const Eigen::Vector3d normal =
+  const Eigen::Vector3d area =
       Eigen::Vector3d(projected.row(0)).cross(Eigen::Vector3d(projected.row(1)));
-  on_screen.peak_share = std::sqrt(normal.squaredNorm() / on_screen.covariance.determinant());
+  on_screen.peak_share = std::sqrt(area.squaredNorm() / on_screen.covariance.determinant());
   on_screen.opacity = opacity * on_screen.peak_share;
   on_screen.mean = PixelOf(view, p);
-  on_screen.rgb =
-      ColorOf(gaussian, gaussian.mean - view.camera_from_normalized.inverse().translation());
+  const Eigen::Vector3d seen_along =
+      gaussian.mean - view.camera_from_normalized.inverse().translation();
+  on_screen.rgb = ColorOf(gaussian, seen_along);
+  Eigen::Index shortest = 0;
+  gaussian.log_scale.minCoeff(&shortest);
+  on_screen.normal = axes.col(shortest).normalized();
+  if (on_screen.normal.dot(seen_along) > 0) on_screen.normal *= -1;
   on_screen.is_drawn = on_screen.opacity > 0;
   return on_screen;
 }
@@ -103,7 +108,10 @@ std::vector<GaussianPixel> DrawGaussians(const std::vector<Gaussian>& gaussians,
         const double weight = pixel.transmittance * alpha;
         pixel.rgb += weight * g.rgb;
         pixel.distance += weight * g.distance;
+        pixel.normal += weight * g.normal;
+        const double before = pixel.transmittance;
         pixel.transmittance -= weight;
+        if (before >= 0.5 && pixel.transmittance < 0.5) pixel.median_distance = g.distance;
       }
       pixels.push_back(pixel);
     }

@@ -27,6 +27,9 @@ struct GaussianPixel {
   Eigen::Vector3d rgb = Eigen::Vector3d::Zero();  // without background
   double transmittance = 1;
   double distance = 0;  // sum of weight times distance of the means
+  // Distance of the one behind which less than half of the light is left; 0: more is left.
+  double median_distance = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // sum of weight times normal
 };
 
 // What the camera sees of one Gaussian: mean and covariance in pixels, the latter with a pixel's
@@ -39,6 +42,7 @@ struct GaussianOnScreen {
   double peak_share = 1;  // opacity of the peak / opacity
   double distance = 0;
   Eigen::Vector3d rgb;
+  Eigen::Vector3d normal;  // its shortest axis, towards the camera, normalized frame
 };
 GaussianOnScreen Project(const Gaussian& gaussian, const GaussianView& view);
 

@@ -55,11 +55,10 @@ RenderedView RenderView(const RayRenderer& renderer, const Camera& camera,
                         const Eigen::Isometry3d& normalized_from_camera,
                         const Eigen::Vector3f& background, ColorEncoding encoding,
                         const std::function<void(std::int64_t)>& progress) {
-  RenderedView view = {Image(camera.width, camera.height, 3, encoding),
-                       Image(camera.width, camera.height, 1, ColorEncoding::kLinear),
-                       Image(camera.width, camera.height, 1, ColorEncoding::kLinear),
-                       0,
-                       {}};
+  RenderedView view;
+  view.rgb = Image(camera.width, camera.height, 3, encoding);
+  view.opacity = Image(camera.width, camera.height, 1, ColorEncoding::kLinear);
+  view.depth = Image(camera.width, camera.height, 1, ColorEncoding::kLinear);
   const std::int64_t across = (camera.width + kBlock - 1) / kBlock;
   const std::int64_t blocks = across * ((camera.height + kBlock - 1) / kBlock);
   const std::int64_t all = static_cast<std::int64_t>(camera.width) * camera.height;

@@ -14,6 +14,9 @@ struct RenderedView {
   Image rgb;      // 3 channels
   Image opacity;  // 1 channel, [0,1]
   Image depth;    // 1 channel, distance along the ray in normalized units, 0 where undefined
+  // Where ViewRequest::surface asks for them, else empty.
+  Image median_depth;  // 1 channel, behind which less than half of the light is left; 0: nowhere
+  Image normal;        // 3 channels, towards the camera, in the normalized frame; 0 where undefined
   std::int64_t samples = 0;  // points at which the field was evaluated
   StageSeconds seconds;
 };

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "nerf/scene/scene_normalization.h"
 #include "nerf/selfcheck/gaussian_drawing.h"
 #include "nerf/selfcheck/gaussian_scene.h"
 #include "nerf/selfcheck/numeric_case.h"
@@ -150,6 +151,30 @@ double ThousandsOfLayersLeaveTheirLight() {
   return worst.Get();
 }
 
+// A scene of a millimetre and one of ten kilometres, far from the origin, in normalized units, look
+// alike: whatever the frame, the picture of the same Gaussians is the same.
+double ScenesOfAnySizeAreDrawnAlike() {
+  WorstError worst;
+  const GaussianView view = SmallView();
+  const std::vector<Gaussian> gaussians = RandomGaussians(30, 0, 5);
+  for (const double scale : {1e-3, 1e4}) {
+    const Eigen::Vector3d origin = scale * Eigen::Vector3d(50, 520, -3);
+    SceneNormalization frame;
+    frame.scale = 1 / scale;
+    frame.translation = -origin / scale;
+    std::vector<Gaussian> again = gaussians;
+    for (Gaussian& g : again) {  // there and back
+      g.mean = frame.NormalizedFromWorld(scale * g.mean + origin);
+    }
+    Eigen::Isometry3d pose = view.camera_from_normalized.inverse();
+    pose.translation() = scale * pose.translation() + origin;
+    GaussianView moved = view;
+    moved.camera_from_normalized = frame.NormalizedFromCamera(pose).inverse();
+    worst.Add(Difference(Draw(again, moved), gaussians, view));
+  }
+  return worst.Get();
+}
+
 double QuaternionsOfAnyLengthAreRotations() {
   WorstError worst;
   const GaussianView view = SmallView();
@@ -221,6 +246,8 @@ std::vector<NumericCase> GaussianCases() {
        ThousandsOfLayersLeaveTheirLight},
       {"QuaternionsOfAnyLengthAreRotations", "colour, against double", Within(2e-5, 2.2e-6), true,
        QuaternionsOfAnyLengthAreRotations},
+      {"ScenesOfAnySizeAreDrawnAlike", "colour, against double", Within(2e-5, 2.2e-6), true,
+       ScenesOfAnySizeAreDrawnAlike},
       {"HugeGaussiansStayFinite", "finite or not", kExact, true, HugeGaussiansStayFinite},
   };
 }

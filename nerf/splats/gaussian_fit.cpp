@@ -22,9 +22,9 @@ using kernels::kGaussiansInBlock;
 constexpr std::uint64_t kTurnStream = 0x67617573735f5f32ull;
 constexpr std::uint64_t kSplitStream = 0x67617573735f5f33ull;
 constexpr std::uint64_t kBackgroundStream = 0x67617573735f5f34ull;
+constexpr double kMostPixelsKept = 4e7;  // of all photographs, 25 bytes each
 // Learning rates are those of a fit of so many iterations, and for others times (this / their
 // number)^power.
-constexpr double kMostPixelsKept = 4e7;  // of all photographs, 25 bytes each
 constexpr double kRatedSteps = 2000, kRatePower = 0.5;
 // A Gaussian becomes two of this size, a standard deviation of its own apart.
 constexpr float kSplitScale = 1 / 1.5f, kSplitDistance = 0.7f;

@@ -51,6 +51,15 @@ struct GaussianParameters {
   }
 };
 
+// [height][width]
+struct GaussianSurface {
+  // Of the Gaussian behind which less than half of the light is left, normalized units; 0: none.
+  std::vector<float> median_distance;
+  // The mean of the normals of what is seen, by its weight: the shortest axes of the Gaussians,
+  // towards the camera. Of length 1 in the normalized frame; 0 where nothing is seen.
+  std::vector<std::array<float, 3>> normal;
+};
+
 // Draws Gaussians, and the backward pass. Uses all threads; the results are the same bits for any
 // number of them. Keeps the buffers of a picture, so that the next one allocates nothing.
 class GaussianRenderer {
@@ -64,6 +73,10 @@ class GaussianRenderer {
   // The picture is valid until the next call.
   GaussianPicture& Draw(const kernels::GaussianCamera& camera,
                         const GaussianParameters& parameters);
+
+  // After Draw, with the same arguments: where its surfaces are.
+  GaussianSurface FindSurface(const kernels::GaussianCamera& camera,
+                              const GaussianParameters& parameters) const;
 
   // After Draw, with the same arguments.
   //   dL_dpicture  of the picture's size

@@ -15,10 +15,9 @@ using kernels::kTileHeight;
 using kernels::kTileWidth;
 using kernels::ProjectedGaussian;
 
-constexpr float kFarOutside = 1e8f;               // pixels
 constexpr std::int64_t kMostEntries = 150000000;  // 2 GB, with their gradients 8 GB
-constexpr std::int64_t kCountedAtOnce = 1024;
-constexpr std::int64_t kChunks = 16;  // whatever the number of threads
+constexpr std::size_t kCountedAtOnce = 1 << 16;   // entries
+constexpr std::int64_t kChunks = 16;              // whatever the number of threads
 
 // The first Gaussian of a chunk.
 std::int64_t FirstOf(std::int64_t chunk, std::span<const ProjectedGaussian> gaussians) {
@@ -29,16 +28,18 @@ std::int64_t FirstOf(std::int64_t chunk, std::span<const ProjectedGaussian> gaus
 // cut it is q = xx dx^2 + xy dx dy + yy dy^2 = least - log2_opacity, negative.
 template <class Use>
 void ForEachTile(const ProjectedGaussian& g, int columns, int rows, const Use& use) {
-  // Not beyond what an int holds, however large the Gaussian is.
-  const auto tile_of = [](float position, int size) {
-    const float bounded = std::clamp(position, -kFarOutside, kFarOutside);
-    return static_cast<int>(std::floor(bounded / static_cast<float>(size)));
+  // Not far beyond the picture, so that an int holds it however large the Gaussian is.
+  const auto tile_of = [](float position, int size, int count) {
+    const float tile =
+        std::clamp(position / static_cast<float>(size), -1.0f, static_cast<float>(count));
+    const int towards_zero = static_cast<int>(tile);  // std::floor is a call before SSE4
+    return towards_zero - static_cast<int>(tile < static_cast<float>(towards_zero));
   };
   // The first and last pixel centre inside.
-  const int top = std::max(0, tile_of(g.y - g.radius_y - 0.5f, kTileHeight));
-  const int bottom = std::min(rows - 1, tile_of(g.y + g.radius_y - 0.5f, kTileHeight));
-  const int left = std::max(0, tile_of(g.x - g.radius_x - 0.5f, kTileWidth));
-  const int right = std::min(columns - 1, tile_of(g.x + g.radius_x - 0.5f, kTileWidth));
+  const int top = std::max(0, tile_of(g.y - g.radius_y - 0.5f, kTileHeight, rows));
+  const int bottom = std::min(rows - 1, tile_of(g.y + g.radius_y - 0.5f, kTileHeight, rows));
+  const int left = std::max(0, tile_of(g.x - g.radius_x - 0.5f, kTileWidth, columns));
+  const int right = std::min(columns - 1, tile_of(g.x + g.radius_x - 0.5f, kTileWidth, columns));
   if (top == bottom || left == right) {
     for (int row = top; row <= bottom; ++row) {
       for (int column = left; column <= right; ++column) use(row * columns + column);
@@ -60,8 +61,8 @@ void ForEachTile(const ProjectedGaussian& g, int columns, int rows, const Use& u
     const float x0 = g.x + (-b * at_left - std::sqrt(root_left)) / a;
     // Half a pixel more, against rounding.
     // Where rounding leaves no number, the whole row.
-    const int first = x1 >= x0 ? std::max(left, tile_of(x0 - 1.0f, kTileWidth)) : left;
-    const int last = x1 >= x0 ? std::min(right, tile_of(x1, kTileWidth)) : right;
+    const int first = x1 >= x0 ? std::max(left, tile_of(x0 - 1.0f, kTileWidth, columns)) : left;
+    const int last = x1 >= x0 ? std::min(right, tile_of(x1, kTileWidth, columns)) : right;
     for (int column = first; column <= last; ++column) use(row * columns + column);
   }
 }
@@ -95,7 +96,7 @@ bool TileLists::FindTiles(std::span<ProjectedGaussian> gaussians) {
     counts.assign(static_cast<std::size_t>(Count()), 0);
     for (std::int64_t i = FirstOf(chunk, gaussians); i < FirstOf(chunk + 1, gaussians); ++i) {
       // Rarely, since threads that count in one place wait for each other.
-      if (i % kCountedAtOnce == 0) {
+      if (tiles.size() - counted >= kCountedAtOnce) {
         entries += static_cast<std::int64_t>(tiles.size() - counted);
         counted = tiles.size();
         if (entries > kMostEntries) return;

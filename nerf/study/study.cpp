@@ -3,12 +3,14 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <utility>
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
+#include "nerf/base/peak_memory.h"
 #include "nerf/base/processor_name.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/image/image_io.h"
@@ -16,9 +18,9 @@
 #include "nerf/model/refined_poses.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/effect_decisions.h"
+#include "nerf/pipeline/representation_training.h"
 #include "nerf/study/crop.h"
 #include "nerf/study/pareto.h"
-#include "nerf/train/trainer.h"
 #include "sfm/transforms_json.h"
 
 namespace nerf {
@@ -28,6 +30,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kQualities[] = {1, 0.75, 0.5, 0.25, 0};
+constexpr double kExact[] = {1};  // Gaussians have no other
 
 constexpr double kSlowestFrame = 5;  // seconds; above it only quality 1 is measured
 
@@ -143,22 +146,23 @@ void Study::DecideEffects() {
 
 Config Study::ConfigOf(const StudySetting& setting, double seconds) const {
   std::vector<std::string> assignments = {fmt::format("data.downscale={}", options_.downscale),
-                                          fmt::format("train.time_budget={:.3f}", seconds)};
+                                          fmt::format("train.time_budget={:.3f}", seconds),
+                                          "train.representation=field"};
   assignments.insert(assignments.end(), decided_.begin(), decided_.end());
   assignments.insert(assignments.end(), setting.assignments.begin(), setting.assignments.end());
   return LoadConfig(setting.preset, assignments);
 }
 
-// The value of the key "qualities" of a setting: PSNR, SSIM and seconds per frame at each rendering
-// quality. Also writes the setting's crop.
-json Study::EvaluateQualities(const ModelSnapshot& model, const std::string& name) {
-  const PosedImages posed = RefinedPoses(model.GetModel(), scene_.posed);
+// The value of the key "qualities" of a setting: PSNR, SSIM and seconds per frame at each of them.
+// Also writes the setting's crop.
+json Study::EvaluateQualities(const SceneModel& model, std::span<const double> qualities,
+                              const PosedImages& posed, const std::string& name) {
   std::vector<const PosedImage*> images;
   for (const std::size_t i : held_out_) images.push_back(&posed.images[i]);
-  json qualities = json::array();
-  for (const double quality : kQualities) {
+  json measured = json::array();
+  for (const double quality : qualities) {
     // A barely trained field can take minutes per frame.
-    if (quality < 1 && qualities[0]["seconds_per_frame"] > kSlowestFrame) break;
+    if (quality < 1 && measured[0]["seconds_per_frame"] > kSlowestFrame) break;
     const Evaluation evaluation = Evaluate(
         model, posed, images, {quality, false, options_.downscale}, [&](const EvaluatedView& view) {
           if (quality != 1 || view.image != images.front()) return;
@@ -172,12 +176,12 @@ json Study::EvaluateQualities(const ModelSnapshot& model, const std::string& nam
     }
     if (evaluation.scores.empty()) throw InputError("{}", evaluation.unreadable.front());
     const ViewScore mean = evaluation.Mean();
-    qualities.push_back({{"quality", quality},
-                         {"psnr", mean.psnr},
-                         {"ssim", mean.ssim},
-                         {"seconds_per_frame", mean.seconds}});
+    measured.push_back({{"quality", quality},
+                        {"psnr", mean.psnr},
+                        {"ssim", mean.ssim},
+                        {"seconds_per_frame", mean.seconds}});
   }
-  return qualities;
+  return measured;
 }
 
 json Study::Measure(const StudySetting& setting, double seconds, const std::atomic<bool>& stop) {
@@ -191,18 +195,37 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
   const Photographs& photographs = Read(config);
   const Stopwatch watch;
   Trainer trainer(config, photographs.facts, photographs.data, run);
-  const TrainSummary summary =
-      trainer.Run(stop, [this](const TrainerEvent& event) { listener_(event); });
-  if (!summary.finished) return {};
-
+  RepresentationsTrained trained;
+  std::string why_not;
+  try {
+    trained = TrainRepresentations(trainer, photographs.data, run, stop, listener_);
+    if (!trained.finished) return {};
+  } catch (const InputError& error) {  // no Gaussians of such photographs, or of such a field
+    why_not = error.what();
+  }
   json result = CostsOf(MetricsPath(run));
   result["name"] = setting.name;
   result["preset"] = setting.preset;
   result["assignments"] = setting.assignments;
   result["seconds"] = photographs.seconds + watch.Seconds();
-  result["steps"] = summary.step;
-  const auto model = ModelSnapshot::Copy(trainer.GetModel(), summary.step);
-  result["qualities"] = EvaluateQualities(*model, setting.name);
+  result["steps"] = trainer.Steps();
+  result["peak_megabytes"] = PeakMegabytes();
+  if (!why_not.empty()) {
+    listener_(Warning{fmt::format("{}: {}", setting.name, why_not)});
+    result["left_out"] = why_not;
+    result["qualities"] = json::array();
+    return result;
+  }
+  const PosedImages posed = RefinedPoses(trainer.GetModel(), scene_.posed);
+  if (config.train.representation == Representation::kSplats) {
+    const auto model = OpenGaussians(run);
+    result["gaussians"] = model->Cloud().count;
+    result["stage_seconds"]["gaussians"] = model->Made().seconds;
+    result["qualities"] = EvaluateQualities(*model, kExact, posed, setting.name);
+  } else {
+    const auto model = ModelSnapshot::Copy(trainer.GetModel(), trainer.Steps());
+    result["qualities"] = EvaluateQualities(*model, kQualities, posed, setting.name);
+  }
   return result;
 }
 
@@ -211,7 +234,9 @@ void Study::MarkFronts() {
   std::vector<CostAndValue> trainings, renderings;
   std::vector<json*> qualities;
   for (json& setting : results_["settings"]) {
-    trainings.push_back({setting["seconds"], setting["qualities"][0]["psnr"]});
+    // One that was left out has none; what is not finite is on no front.
+    const json psnr = setting["qualities"].empty() ? json() : setting["qualities"][0]["psnr"];
+    trainings.push_back({setting["seconds"], psnr.is_number() ? psnr.get<double>() : std::nan("")});
     setting["on_training_front"] = false;
     for (json& quality : setting["qualities"]) {
       renderings.push_back({quality["seconds_per_frame"], quality["psnr"]});

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,9 @@ struct StudyOptions {
 };
 
 // A study: trains a grid of settings, each for its share of the budget and with the effects that
-// `nerf train` would choose, and evaluates them on held-out photographs at several rendering
-// qualities. Writes study.json after each setting, and continues an earlier study with the same
-// options.
+// `nerf train` would choose, and evaluates them on held-out photographs, fields at several
+// rendering qualities, Gaussians as they are. Writes study.json after each setting, and continues
+// an earlier study with the same options.
 class Study {
  public:
   //   scene     prepared with the splits of the preset `balanced`, and inspected
@@ -57,7 +58,8 @@ class Study {
   Config ConfigOf(const StudySetting& setting, double seconds) const;
   nlohmann::json Measure(const StudySetting& setting, double seconds,
                          const std::atomic<bool>& stop);
-  nlohmann::json EvaluateQualities(const ModelSnapshot& model, const std::string& name);
+  nlohmann::json EvaluateQualities(const SceneModel& model, std::span<const double> qualities,
+                                   const PosedImages& posed, const std::string& name);
   Photographs& Read(const Config& config);
   void MarkFronts();
   void Save() const;

@@ -15,9 +15,11 @@ constexpr double kShortestTraining = 1;  // seconds
 }  // namespace
 
 std::vector<StudySetting> StudySettings(int downscale) {
+  const std::vector<std::string> splats = {"train.representation=splats"};
   return {
       {"fast-short", "fast", {}, kShort},
       {"balanced-short", "balanced", {}, kShort},
+      {"splats-short", "fast", splats, kShort},
       {"fast-middle", "fast", {}, kMiddle},
       {"balanced-middle", "balanced", {}, kMiddle},
       {"small-table", "balanced", {"encoding.log2_table_size=15"}, kMiddle},
@@ -26,8 +28,10 @@ std::vector<StudySetting> StudySettings(int downscale) {
       {"few-samples", "balanced", {"proposal.samples=16", "march.steps_per_unit=64"}, kMiddle},
       {"bfloat16", "balanced", {"train.precision=bfloat16"}, kMiddle},
       {"half-resolution", "balanced", {fmt::format("data.downscale={}", 2 * downscale)}, kMiddle},
+      {"splats-middle", "fast", splats, kMiddle},
       {"balanced-long", "balanced", {}, kLong},
       {"accurate-long", "accurate", {}, kLong},
+      {"splats-long", "fast", splats, kLong},
   };
 }
 

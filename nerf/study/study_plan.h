@@ -15,7 +15,8 @@ struct StudySetting {
 
 // The settings of a study: the presets for a short, a middle and a long time, and variants of
 // `balanced` for the middle time that change one thing: levels or size of the hash table, width of
-// the networks, samples per ray, precision, resolution of the photographs. By increasing time.
+// the networks, samples per ray, precision, resolution of the photographs. For each time also one
+// that fits Gaussians to a field. By increasing time.
 //   downscale  of the photographs, unless a setting changes it
 std::vector<StudySetting> StudySettings(int downscale);
 

@@ -60,12 +60,19 @@ TEST_F(SplatCommand, MakesGaussiansThatEvalAndRenderDraw) {
   const double fitted = PsnrWith("splats");
   ASSERT_EQ(Splat("--set splats.steps=1").exit_status, 0);
   EXPECT_GT(fitted, PsnrWith("splats") + 1);
-  const auto rendered =
-      RunNerf("render " + Path("run") + " --with splats --depth --opacity -o " + Path("views"));
+  const auto rendered = RunNerf("render " + Path("run") +
+                                " --with splats --depth --opacity --surface -o " + Path("views"));
   ASSERT_EQ(rendered.exit_status, 0) << rendered.output;
   const Image picture = ReadImage(Path("views/view_000.png"), false);
   EXPECT_EQ(picture.width, 64);
   EXPECT_TRUE(fs::exists(Path("views/view_000.depth.exr")));
+  EXPECT_TRUE(fs::exists(Path("views/view_000.median_depth.exr")));
+  EXPECT_TRUE(fs::exists(Path("views/view_000.normal.exr")));
+  const Image normals = ReadImage(Path("views/view_000.normal.png"), false);
+  EXPECT_EQ(normals.width, 64);
+  const auto of_field = RunNerf("render " + Path("run") + " --with field --surface");
+  EXPECT_EQ(of_field.exit_status, 2);
+  EXPECT_THAT(of_field.output, HasSubstr("--surface: median depth and normals are of Gaussians"));
 }
 
 TEST_F(SplatCommand, TrainingMakesThemWhereTheyAreAskedFor) {

@@ -8,6 +8,7 @@
 
 #include "nerf/base/stopwatch.h"
 #include "nerf/model/run_folder.h"
+#include "nerf/scene/scene_normalization.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/representation_training.h"
 #include "tests/support/scratch_folder.h"
@@ -103,6 +104,46 @@ TEST(RepresentationTraining, WithoutValidationTheFieldIsTrainedAlone) {
   EXPECT_THAT(why_not, HasSubstr("without validation photographs"));
   EXPECT_FALSE(fs::exists(GaussiansPath(run.path())));
   EXPECT_EQ(ReadRepresentation(run.path()).Best(), Representation::kField);
+}
+
+// Row 48 of the hard cases. Normalisation cancels units and origin, but for the rounding of poses.
+TEST(RepresentationTraining, AMillimetreAndTenKilometresGiveTheSameGaussians) {
+  const auto psnr_at = [](double scale, const Eigen::Vector3d& origin) {
+    test::SmallCapture small = CaptureWithValidation();
+    std::vector<View*> views;
+    for (View& view : small.data.train) views.push_back(&view);
+    for (View& view : small.data.validation) views.push_back(&view);
+    for (PosedImage& image : small.capture.posed.images) {
+      image.world_from_camera.translation() =
+          scale * image.world_from_camera.translation() + origin;
+    }
+    small.scene.normalized_from_world = NormalizeScene(small.capture.posed);
+    std::size_t next = 0;
+    for (const PosedImage& image : small.capture.posed.images) {
+      if (image.split != Split::kTrain) continue;
+      views[next++]->normalized_from_camera =
+          small.scene.normalized_from_world.NormalizedFromCamera(image.world_from_camera);
+    }
+    test::ScratchFolder run;
+    return Train(small, ConfigOf(Representation::kSplats), run.path()).record.reached->splats;
+  };
+  const double usual = psnr_at(1, Eigen::Vector3d::Zero());
+  EXPECT_GT(usual, 13);
+  // The built-in scene is about four units across; the origin is that of a UTM zone.
+  EXPECT_NEAR(psnr_at(0.25e-3, Eigen::Vector3d::Zero()), usual, 0.3);
+  EXPECT_NEAR(psnr_at(0.25e4, {5e5, 5.2e6, 300}), usual, 0.3);
+}
+
+// Row 50 of the hard cases.
+TEST(RepresentationTraining, MoreGaussiansThanMemoryHoldsAreRefusedWithTheirNumber) {
+  const test::SmallCapture small = CaptureWithValidation();
+  const Config config = ConfigOf(Representation::kSplats);
+  GaussianScene scene = GaussianSceneOf(MakeModel(config, small.scene), small.data);
+  scene.config.splats.count = 2000000000;
+  const auto field = ModelSnapshot::Copy(MakeModel(config, small.scene), 0);
+  EXPECT_THAT(
+      test::InputErrorOf([&] { StartAtSurfaces(*field, scene, never_stop, [](std::size_t) {}); }),
+      HasSubstr("splats.count 2000000000: the fit needs about"));
 }
 
 TEST(RepresentationTraining, LinearPhotographsAreRefusedWhereGaussiansAreAskedFor) {

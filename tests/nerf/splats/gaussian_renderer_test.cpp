@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "nerf/base/input_error.h"
 #include "nerf/base/parallel.h"
 #include "nerf/kernels/simd_level.h"
 #include "nerf/scene/camera_models.h"
@@ -125,6 +126,23 @@ double CentralDifference(const std::function<double(double)>& f) {
   return (f(kStep) - f(-kStep)) / (2 * kStep);
 }
 
+// Row 50 of the hard cases: their tiles would not fit into memory.
+TEST(TileLists, TooManyTilesAreRefusedWithTheirNumber) {
+  kernels::ProjectedGaussian huge;
+  huge.x = huge.y = 4000;
+  huge.xx = huge.yy = -1e-12f;
+  huge.least = -8;
+  huge.radius_x = huge.radius_y = 1e6f;
+  std::vector<kernels::ProjectedGaussian> gaussians(2000, huge);  // of 500,000 tiles each
+  TileLists tiles;
+  try {
+    tiles.Build(gaussians, 8000, 8000);
+    FAIL() << "expected an error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("2000 Gaussians cover more than 150 million"));
+  }
+}
+
 class GaussiansOfEveryLens : public testing::TestWithParam<int> {
  protected:
   GaussianView view_{CameraOf(static_cast<CameraModel>(GetParam())), SomePose(), 0.02};
@@ -154,6 +172,34 @@ TEST_P(GaussiansOfEveryLens, AreDrawnAsTheReference) {
       }
     }
     EXPECT_LT(largest, 3e-4);
+  }
+}
+
+TEST_P(GaussiansOfEveryLens, HaveTheSurfacesOfTheReference) {
+  const std::vector<float> blocks = InBlocks(gaussians_, 3);
+  const std::vector<GaussianPixel> truth = DrawGaussians(gaussians_, view_);
+  const kernels::GaussianCamera camera =
+      MakeGaussianCamera(view_.camera, view_.camera_from_normalized.inverse(), view_.near);
+  for (const kernels::SimdLevel& level : kernels::SimdLevels()) {
+    SCOPED_TRACE(level.name);
+    const kernels::WithSimdLevel use(level);
+    GaussianRenderer renderer;
+    renderer.Draw(camera, {3, blocks});
+    const GaussianSurface surface = renderer.FindSurface(camera, {3, blocks});
+    int compared = 0, with_median = 0, other_median = 0;
+    for (std::size_t p = 0; p < truth.size(); ++p) {
+      if (truth[p].median_distance > 0) ++with_median;
+      // Where rounding takes the light below half at another Gaussian.
+      if (std::abs(surface.median_distance[p] - truth[p].median_distance) > 1e-4) ++other_median;
+      if (truth[p].normal.norm() < 1e-2) continue;
+      ++compared;
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(surface.normal[p][k], truth[p].normal.normalized()[k], 5e-3);
+      }
+    }
+    EXPECT_GT(compared, 300);
+    EXPECT_GT(with_median, 50);
+    EXPECT_LE(other_median, 2);
   }
 }
 
