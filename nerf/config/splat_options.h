@@ -11,8 +11,8 @@ struct SplatOptions {
   double share = 0.8;
   int harmonics_order = 3;
   double structural = 0.3;
-  double quarter_resolution = 0.3;
-  double half_resolution = 0.8;
+  double quarter_resolution = 0.25;
+  double half_resolution = 0.7;
   double split_until = 0.7;
   int split_every = 50;
   double split_share = 0.05;

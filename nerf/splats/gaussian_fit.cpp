@@ -22,7 +22,7 @@ using kernels::kGaussiansInBlock;
 constexpr std::uint64_t kTurnStream = 0x67617573735f5f32ull;
 constexpr std::uint64_t kSplitStream = 0x67617573735f5f33ull;
 constexpr std::uint64_t kBackgroundStream = 0x67617573735f5f34ull;
-constexpr double kMostPixelsKept = 4e7;  // of all photographs, 25 bytes each
+constexpr double kMostPixelsKept = 1e8;  // of all photographs, 6 bytes each
 // Learning rates are those of a fit of so many iterations, and for others times (this / their
 // number)^power.
 constexpr double kRatedSteps = 2000, kRatePower = 0.5;
@@ -61,11 +61,11 @@ GaussianFit::GaussianFit(std::vector<TargetView> views, bool has_alpha, Gaussian
   double pixels = 0;
   for (const TargetView& view : views_) pixels += static_cast<double>(PixelCount(view.camera));
   if (pixels <= kMostPixelsKept) {
-    for (int halvings = 0; halvings < kResolutions; ++halvings) {
+    for (int halvings = 1; halvings < kResolutions; ++halvings) {
       if (halvings > HalvingsAt(options_, 0)) break;
       pictures_[halvings].resize(views_.size());
       ParallelForEach(static_cast<std::int64_t>(views_.size()), [&](std::int64_t i) {
-        pictures_[halvings][i] = PictureOf(views_[i], halvings);
+        MakePicture(views_[i], halvings, pictures_[halvings][i]);
       });
     }
   }
@@ -73,13 +73,13 @@ GaussianFit::GaussianFit(std::vector<TargetView> views, bool has_alpha, Gaussian
   std::iota(turn_.begin(), turn_.end(), 0u);
 }
 
-GaussianFit::Picture GaussianFit::PictureOf(const TargetView& view, int halvings) const {
+void GaussianFit::MakePicture(const TargetView& view, int halvings, Picture& picture) const {
   while (halvings > 0 && std::min(view.camera.width, view.camera.height) >> halvings < 1) {
     --halvings;
   }
   const TargetView reduced = Reduced(view, halvings);
-  return {TargetOf(reduced),
-          MakeGaussianCamera(reduced.camera, view.normalized_from_camera, near_)};
+  MakeTarget(reduced, picture.target);
+  picture.camera = MakeGaussianCamera(reduced.camera, view.normalized_from_camera, near_);
 }
 
 // Each photograph once in a random order, then again in another.
@@ -93,8 +93,8 @@ const GaussianFit::Picture& GaussianFit::NextPicture(double progress) {
   }
   const std::uint32_t photograph = turn_[state_.step % count];
   const int halvings = HalvingsAt(options_, progress);
-  if (!pictures_[0].empty()) return pictures_[halvings][photograph];
-  picture_ = PictureOf(views_[photograph], halvings);
+  if (!pictures_[halvings].empty()) return pictures_[halvings][photograph];
+  MakePicture(views_[photograph], halvings, picture_);
   return picture_;
 }
 

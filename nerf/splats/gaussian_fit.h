@@ -59,7 +59,7 @@ class GaussianFit {
     TargetPicture target;
     kernels::GaussianCamera camera;
   };
-  Picture PictureOf(const TargetView& view, int halvings) const;
+  void MakePicture(const TargetView& view, int halvings, Picture& picture) const;
   const Picture& NextPicture(double progress);
   // Rows of parameters that share a learning rate.
   struct RowGroup {
@@ -77,7 +77,7 @@ class GaussianFit {
   std::uint64_t seed_;
   std::vector<TargetView> views_;
   double near_;
-  // By the number of halvings; empty where they would need too much memory.
+  // By the number of halvings; empty in full, and where they would need too much memory.
   std::array<std::vector<Picture>, kResolutions> pictures_;
   Picture picture_;                  // then that of this step
   std::vector<std::uint32_t> turn_;  // the order of the photographs

@@ -15,7 +15,11 @@ namespace {
 constexpr std::uint64_t kSubsetStream = 0x67617573735f5f31ull;
 constexpr std::size_t kNeighbours = 3;
 constexpr double kSmallest = 1e-4, kLargest = 1;  // normalized units
-constexpr double kOpacity = 0.1;
+// Small and opaque: the points are on surfaces. Large and transparent ones (size 1, opacity 0.1)
+// cost four times as many contributions to a pixel, and end lower: on validation photographs, after
+// 40 s of the fox by 0.4 dB, of the chair by 0.5, of two_groups by 1.6.
+constexpr double kOpacity = 0.8;
+constexpr double kSize = 0.42;  // of the distance to the nearest points
 // Black before black has no gradient, and points without a colour are black.
 constexpr float kDarkest = 0.02f;
 constexpr float kConstantHarmonic = 0.28209479f;
@@ -78,7 +82,7 @@ GaussianCloud GaussiansAtPoints(const std::vector<ColoredPoint>& points, std::in
     for (int k = 0; k < 3; ++k) {
       cloud.At(i, kernels::kMeanRow + k) = static_cast<float>(used[i].x_in_normalized[k]);
       cloud.At(i, kernels::kLogScaleRow + k) =
-          static_cast<float>(std::log(std::clamp(spacing[i], kSmallest, kLargest)));
+          static_cast<float>(std::log(std::clamp(kSize * spacing[i], kSmallest, kLargest)));
       const float color = std::max(used[i].rgb[k], kDarkest);
       cloud.At(i, kernels::kColorRow + k) = (color - 0.5f) / kConstantHarmonic;
     }

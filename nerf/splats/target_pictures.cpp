@@ -1,8 +1,45 @@
 #include "nerf/splats/target_pictures.h"
 
+#include <algorithm>
+#include <cstdint>
+
+#include "nerf/base/parallel.h"
+#include "nerf/kernels/half_planes.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {
+namespace {
+
+constexpr std::int64_t kRowsTogether = 16;
+
+// Where all pixels are stored, row after row.
+void FillRows(const View& photograph, const std::array<float, 4>& scale, TargetPicture& target) {
+  static_assert(sizeof(Eigen::half) == sizeof(std::uint16_t));
+  const auto* const bits = reinterpret_cast<const std::uint16_t*>(photograph.rgba.data());
+  const std::size_t values = 4 * static_cast<std::size_t>(target.width);
+  ParallelFor(target.height, kRowsTogether, [&](std::int64_t first, std::int64_t last) {
+    for (auto y = static_cast<int>(first); y < last; ++y) {
+      kernels::PlanesOfHalves(
+          {bits + static_cast<std::size_t>(y) * values, values}, scale,
+          {target.Row(0, y), target.Row(1, y), target.Row(2, y), target.Row(3, y)});
+      std::fill_n(target.Row(TargetPicture::kWeight, y), target.width, 1.0f);
+    }
+  });
+}
+
+void FillStored(const View& photograph, const std::array<float, 4>& scale, TargetPicture& target) {
+  for (std::int64_t k = 0; k < photograph.StoredCount(); ++k) {
+    const std::int64_t pixel = photograph.PixelIndex(k);
+    const auto y = static_cast<int>(pixel / target.width),
+               x = static_cast<int>(pixel % target.width);
+    for (int plane = 0; plane < 4; ++plane) {
+      target.Row(plane, y)[x] = static_cast<float>(photograph.rgba[4 * k + plane]) * scale[plane];
+    }
+    target.Row(TargetPicture::kWeight, y)[x] = 1;
+  }
+}
+
+}  // namespace
 
 std::vector<TargetView> TargetViewsOf(const std::vector<View>& views) {
   std::vector<TargetView> targets;
@@ -13,21 +50,21 @@ std::vector<TargetView> TargetViewsOf(const std::vector<View>& views) {
 }
 
 TargetPicture TargetOf(const TargetView& view) {
-  const View& photograph = *view.photograph;
   TargetPicture target;
+  MakeTarget(view, target);
+  return target;
+}
+
+void MakeTarget(const TargetView& view, TargetPicture& target) {
+  const View& photograph = *view.photograph;
   target.Resize(photograph.camera.width, photograph.camera.height);
   const std::array<float, 4> scale = {1 / view.gains[0], 1 / view.gains[1], 1 / view.gains[2], 1};
-  for (std::int64_t k = 0; k < photograph.StoredCount(); ++k) {
-    const std::int64_t pixel = photograph.PixelIndex(k);
-    const auto y = static_cast<int>(pixel / target.width),
-               x = static_cast<int>(pixel % target.width);
-    for (int plane = 0; plane < 4; ++plane) {
-      target.Row(plane, y)[x] = static_cast<float>(photograph.rgba[4 * k + plane]) * scale[plane];
-    }
-    target.Row(TargetPicture::kWeight, y)[x] = 1;
+  if (photograph.StoredCount() == PixelCount(photograph.camera)) {
+    FillRows(photograph, scale, target);
+  } else {
+    FillStored(photograph, scale, target);
   }
   for (int i = 0; i < view.halvings; ++i) target = Halved(target);
-  return target;
 }
 
 TargetView Reduced(TargetView view, int halvings) {

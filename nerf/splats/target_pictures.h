@@ -26,5 +26,7 @@ TargetView Reduced(TargetView view, int halvings);
 
 // The photograph at the mean exposure; pixels that it does not store have a weight of 0.
 TargetPicture TargetOf(const TargetView& view);
+// The same into a picture whose memory is used again. Uses all threads.
+void MakeTarget(const TargetView& view, TargetPicture& target);
 
 }  // namespace nerf

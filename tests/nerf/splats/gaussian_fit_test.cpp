@@ -181,9 +181,9 @@ TEST(GaussiansAtPoints, AreAsLargeAsTheirSpacing) {
   const GaussianCloud cloud = GaussiansAtPoints(points, 40, 2, 1);
   EXPECT_EQ(cloud.count, 40);
   for (std::int64_t i = 0; i < 27; ++i) {
-    EXPECT_NEAR(cloud.At(i, kernels::kLogScaleRow), std::log(0.25), 1e-5);
+    EXPECT_NEAR(cloud.At(i, kernels::kLogScaleRow), std::log(0.42 * 0.25), 1e-5);
     EXPECT_NEAR(cloud.At(i, kernels::kColorRow) * 0.28209479 + 0.5, 1, 1e-5);
-    EXPECT_NEAR(1 / (1 + std::exp(-cloud.At(i, kernels::kOpacityRow))), 0.1, 1e-5);
+    EXPECT_NEAR(1 / (1 + std::exp(-cloud.At(i, kernels::kOpacityRow))), 0.8, 1e-5);
   }
   EXPECT_LT(cloud.At(30, kernels::kOpacityRow), -10);
   EXPECT_EQ(GaussiansAtPoints(points, 10, 0, 1).count, 10);
