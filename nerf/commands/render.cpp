@@ -78,7 +78,7 @@ double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArgumen
     uses_splats = true;
     const std::string seconds = FormatSeconds(*arguments.seconds_per_frame);
     if (measured.seconds > *arguments.seconds_per_frame) {
-      fmt::print("no quality of the field takes at most {} a frame; the Gaussians do\n", seconds);
+      fmt::print("no quality of the field takes at most {} a frame; Gaussians are drawn\n", seconds);
     } else {
       fmt::print("at {} a frame the Gaussians are better than the field at quality {:.2f}\n",
                  seconds, measured.quality);

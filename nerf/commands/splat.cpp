@@ -44,8 +44,12 @@ void RunSplat(SplatArguments& arguments) {
     WritePly(arguments);
     return;
   }
-  if (arguments.request.resume && !arguments.request.assignments.empty()) {
-    throw InputError("--resume continues with the options of the fit; omit --set");
+  const GaussianRequest& request = arguments.request;
+  if (request.resume && (!request.assignments.empty() || request.megabytes != 0)) {
+    throw InputError("--resume continues with the options of the fit; omit --set and --megabytes");
+  }
+  if (!(request.megabytes >= 0)) {
+    throw InputError("--megabytes {}: use more than 0", request.megabytes);
   }
   const Stopwatch watch;
   UseThreads(arguments.threads);
@@ -87,6 +91,9 @@ void AddSplatCommand(CLI::App& app) {
                                "override a value: splats.count=100000; repeatable")
                   ->allow_extra_args(false)
                   ->take_all();
+  auto* megabytes = command->add_option("--megabytes", arguments->request.megabytes,
+                                        "as many Gaussians as a PLY file of this size has "
+                                        "[splats.count]");
   auto* resume =
       command->add_flag("--resume", arguments->request.resume,
                         "continue a fit that was interrupted, with its options and its plan");
@@ -95,6 +102,7 @@ void AddSplatCommand(CLI::App& app) {
                    "make none, but write those of the run to this file, for other programs")
       ->excludes(resume)
       ->excludes(budget)
+      ->excludes(megabytes)
       ->excludes(set);
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
@@ -104,6 +112,7 @@ void AddSplatCommand(CLI::App& app) {
       "Examples:\n"
       "  nerf splat runs/fox\n"
       "  nerf splat runs/fox --time-budget 2m --set splats.count=100000\n"
+      "  nerf splat runs/fox --megabytes 10\n"
       "  nerf splat runs/fox --ply fox.ply\n"
       "  nerf render runs/fox --with splats --path orbit");
   command->callback([arguments] { RunSplat(*arguments); });

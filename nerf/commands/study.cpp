@@ -68,9 +68,12 @@ void RunStudy(const StudyArguments& arguments) {
   AddMissingPoints(scene, folder, config.data.points_share * options.budget, listener);
   InspectScene(config, {}, scene, listener);
   listener(CaptureInspected{&scene.inspection, {}, scene.inspection_seconds});
-  // Events of single trainings are not shown.
+  // Steps of single trainings are not shown.
   const PipelineListener setting_listener = [&](const PipelineEvent& event) {
-    if (!std::holds_alternative<TrainerEvent>(event)) display(event);
+    const bool is_step = std::holds_alternative<TrainerEvent>(event) ||
+                         std::holds_alternative<SurfacesRendered>(event) ||
+                         std::holds_alternative<GaussiansStepped>(event);
+    if (!is_step) display(event);
   };
   Study study(std::move(scene), options, folder, setting_listener);
   fmt::print("{} settings in {} (without poses); Ctrl-C stops, the same command continues\n",

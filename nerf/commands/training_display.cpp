@@ -144,8 +144,9 @@ void TrainingDisplay::Show(const EffectsUndecided& event) {
 }
 
 void TrainingDisplay::Show(const BudgetPlanned& event) {
-  Print("time budget {}: preset {}, about {:.0f} steps\n", FormatDuration(event.seconds),
-        event.preset, event.steps);
+  Print("time budget {}: preset {}, about {:.0f} steps of the field in {}\n",
+        FormatDuration(event.seconds), event.preset, event.steps,
+        FormatDuration(event.field_seconds));
 }
 
 void TrainingDisplay::Show(const PosesRefined& event) {
@@ -201,6 +202,11 @@ void TrainingDisplay::Show(const RepresentationDecided& event) {
   } else if (!event.makes_splats) {
     Print("no Gaussians: {}\n", event.why_not);
   }
+}
+
+void TrainingDisplay::Show(const GaussiansFailed& event) {
+  progress_.reset();
+  spdlog::warn("no Gaussians, the field is kept: {}", event.why);
 }
 
 void TrainingDisplay::Show(const GaussiansEnded& event) {

@@ -39,6 +39,7 @@ class TrainingDisplay {
   void Show(const SurfacesRendered& event);
   void Show(const GaussiansStepped& event);
   void Show(const RepresentationDecided& event);
+  void Show(const GaussiansFailed& event);
   void Show(const GaussiansEnded& event);
   void Show(const StepTaken& event);
 

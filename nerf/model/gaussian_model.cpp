@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "nerf/base/input_error.h"
+#include "nerf/base/parallel.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/scene/dataset.h"
 #include "nerf/splats/gaussian_camera.h"
@@ -14,6 +15,7 @@ namespace nerf {
 namespace {
 
 constexpr float kLeastOpacity = 1e-3f;  // below it depth is undefined
+constexpr std::int64_t kRowsAtOnce = 16;
 // Tensors of the file.
 constexpr char kGaussians[] = "gaussians", kFirstMoment[] = "first_moment",
                kSecondMoment[] = "second_moment", kNeed[] = "need";
@@ -52,6 +54,30 @@ GaussianModel ModelOf(const Checkpoint& checkpoint, const std::filesystem::path&
   }
 }
 
+// A picture on the display background.
+RenderedView ViewOf(const GaussianPicture& picture, const SceneFacts& scene) {
+  const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
+  RenderedView view;
+  view.rgb = Image(picture.width, picture.height, 3, scene.encoding);
+  view.opacity = Image(picture.width, picture.height, 1, ColorEncoding::kLinear);
+  view.depth = Image(picture.width, picture.height, 1, ColorEncoding::kLinear);
+  ParallelFor(picture.height, kRowsAtOnce, [&](std::int64_t first, std::int64_t last) {
+    for (auto y = static_cast<int>(first); y < last; ++y) {
+      const float* const T = picture.Row(GaussianPicture::kTransmittance, y);
+      const float* const distance = picture.Row(GaussianPicture::kDistance, y);
+      for (int x = 0; x < picture.width; ++x) {
+        for (int c = 0; c < 3; ++c) {
+          view.rgb.At(x, y)[c] = picture.Row(c, y)[x] + T[x] * background[c];
+        }
+        const float opacity = 1 - T[x];
+        *view.opacity.At(x, y) = opacity;
+        *view.depth.At(x, y) = opacity > kLeastOpacity ? distance[x] / opacity : 0;
+      }
+    }
+  });
+  return view;
+}
+
 void AddSurface(const GaussianSurface& surface, RenderedView& view) {
   const int width = view.rgb.width, height = view.rgb.height;
   view.median_depth = Image(width, height, 1, ColorEncoding::kLinear);
@@ -79,30 +105,15 @@ RenderedView GaussianModel::Render(const ViewRequest& view) const {
   }
   const Eigen::Isometry3d pose =
       scene_.normalized_from_world.NormalizedFromCamera(view.world_from_camera);
-  const Eigen::Vector3f background = DisplayBackground(scene_.has_alpha);
-  GaussianRenderer renderer;
   const kernels::GaussianCamera camera = MakeGaussianCamera(view.camera, pose, near_);
-  const GaussianPicture& picture = renderer.Draw(camera, cloud_.Parameters());
-  RenderedView rendered;
-  rendered.rgb = Image(picture.width, picture.height, 3, scene_.encoding);
-  rendered.opacity = Image(picture.width, picture.height, 1, ColorEncoding::kLinear);
-  rendered.depth = Image(picture.width, picture.height, 1, ColorEncoding::kLinear);
-  for (int y = 0; y < picture.height; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * picture.stride;
-    const float* const T = picture.Plane(GaussianPicture::kTransmittance) + row;
-    const float* const distance = picture.Plane(GaussianPicture::kDistance) + row;
-    for (int x = 0; x < picture.width; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        rendered.rgb.At(x, y)[c] = picture.Plane(c)[row + x] + T[x] * background[c];
-      }
-      const float opacity = 1 - T[x];
-      *rendered.opacity.At(x, y) = opacity;
-      *rendered.depth.At(x, y) = opacity > kLeastOpacity ? distance[x] / opacity : 0;
-    }
+  std::unique_ptr<GaussianRenderer> renderer = renderers_->Take();
+  RenderedView rendered = ViewOf(renderer->Draw(camera, cloud_.Parameters()), scene_);
+  if (view.surface) AddSurface(renderer->FindSurface(camera, cloud_.Parameters()), rendered);
+  rendered.samples = renderer->Visible();
+  renderers_->Give(std::move(renderer));
+  if (view.progress) {
+    view.progress(static_cast<std::int64_t>(view.camera.width) * view.camera.height);
   }
-  if (view.surface) AddSurface(renderer.FindSurface(camera, cloud_.Parameters()), rendered);
-  rendered.samples = renderer.Visible();
-  if (view.progress) view.progress(std::int64_t{picture.width} * picture.height);
   return rendered;
 }
 

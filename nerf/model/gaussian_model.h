@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "nerf/model/checkpoint.h"
 #include "nerf/model/scene_model.h"
 #include "nerf/splats/gaussian_cloud.h"
 #include "nerf/splats/gaussian_fit.h"
+#include "nerf/splats/renderer_pool.h"
 
 namespace nerf {
 
@@ -39,6 +41,7 @@ class GaussianModel : public SceneModel {
   GaussianCloud cloud_;
   double near_;
   FitFacts made_;
+  std::shared_ptr<RendererPool> renderers_ = std::make_shared<RendererPool>();
 };
 
 // A fit that has not ended.

@@ -40,6 +40,7 @@ RepresentationRecord ReadRepresentation(const std::filesystem::path& run) {
     record.tried = PsnrOf(stored, "tried_psnr");
     record.reached = PsnrOf(stored, "reached_psnr");
     record.field_seconds = stored.value("field_seconds", 0.0);
+    record.field_steps = stored.value("field_steps", std::int64_t{-1});
     record.splats_stand = stored.value("splats_stand", false);
   } catch (const nlohmann::json::exception& error) {
     throw InputError("{}: {}; delete it, and choose with --with field or --with splats",
@@ -54,6 +55,7 @@ void WriteRepresentation(const RepresentationRecord& record, const std::filesyst
   if (record.tried) stored["tried_psnr"] = JsonOf(*record.tried);
   if (record.reached) stored["reached_psnr"] = JsonOf(*record.reached);
   if (record.field_seconds > 0) stored["field_seconds"] = record.field_seconds;
+  if (record.field_steps >= 0) stored["field_steps"] = record.field_steps;
   if (record.splats_stand) stored["splats_stand"] = true;
   stored["best"] = record.Best() == Representation::kSplats ? "splats" : "field";
   WriteFileAtomically(RepresentationPath(run), stored.dump(2) + "\n");

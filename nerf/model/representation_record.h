@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 
@@ -19,6 +20,7 @@ struct RepresentationRecord {
   std::optional<bool> makes_splats;
   std::optional<ComparedPsnr> tried;
   double field_seconds = 0;  // the end of the field's part of the time budget; 0: there is none
+  std::int64_t field_steps = -1;  // of the field, once it has ended before Gaussians; -1: not yet
   std::optional<ComparedPsnr> reached;  // at the end
   // Gaussians were asked for by name and have ended, but nothing validates.
   bool splats_stand = false;

@@ -83,9 +83,10 @@ struct EffectsUndecided {
   std::vector<std::string> effects;
 };
 struct BudgetPlanned {
-  double seconds = 0;  // the budget
+  double seconds = 0;        // the budget
+  double field_seconds = 0;  // of the field's training, where Gaussians follow
   std::string preset;
-  double steps = 0;  // approximate number in the budget
+  double steps = 0;  // approximate number in these seconds
 };
 // The first step follows.
 struct TrainingBegan {
@@ -127,6 +128,10 @@ struct GaussianSummary {
   bool reached_target = false;
   QualityCurve curve;
 };
+// The field is kept without them, and trained on where there is time.
+struct GaussiansFailed {
+  std::string why;
+};
 struct GaussiansEnded {
   GaussianSummary fit;
   std::optional<ComparedPsnr> reached;
@@ -137,7 +142,7 @@ using PipelineEvent =
                  InspectionProgress, CaptureInspected, DataPlanned, VerdictReached, EffectsTried,
                  EffectsUndecided, BudgetPlanned, TrainingBegan, TrainerEvent, PosesRefined,
                  TrainingEnded, SurfacesRendered, GaussiansStepped, RepresentationDecided,
-                 GaussiansEnded>;
+                 GaussiansFailed, GaussiansEnded>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // A listener that ignores all events.

@@ -21,17 +21,6 @@ constexpr double kNearShare = 0.5;
 // ten tiles.
 constexpr double kBytesBeside = 700;
 
-void RequireMemory(const SplatOptions& options) {
-  const double each = 3.0 * sizeof(float) * kernels::GaussianRows(options.harmonics_order);
-  const double needed = 1e-6 * options.count * (each + kBytesBeside);
-  const double available = AvailableMegabytes();
-  if (needed <= available) return;
-  throw InputError(
-      "splats.count {}: the fit needs about {:.0f} MB, and {:.0f} MB are available; "
-      "use at most {:.0f}",
-      options.count, needed, available, options.count * available / needed);
-}
-
 std::vector<TargetView> RefinedViews(const Model& field, const std::vector<View>& views,
                                      bool has_gains) {
   std::vector<TargetView> targets = TargetViewsOf(views);
@@ -60,6 +49,17 @@ GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
   return scene;
 }
 
+std::string TooLittleMemory(const SplatOptions& options) {
+  const double each = 3.0 * sizeof(float) * kernels::GaussianRows(options.harmonics_order);
+  const double needed = 1e-6 * options.count * (each + kBytesBeside);
+  const double available = AvailableMegabytes();
+  if (needed <= available) return "";
+  return fmt::format(
+      "splats.count {}: the fit needs about {:.0f} MB, and {:.0f} MB are available; use at most "
+      "{:.0f}",
+      options.count, needed, available, options.count * available / needed);
+}
+
 void WarnOfFieldsEffects(const Config& config, const PipelineListener& listener) {
   const auto warn = [&](const EffectDescriptor& effect) {
     listener(Warning{
@@ -74,7 +74,9 @@ std::optional<GaussianStart> StartAtSurfaces(const ModelSnapshot& field, const G
                                              const std::atomic<bool>& stop,
                                              const std::function<void(std::size_t)>& progress) {
   const SplatOptions& options = scene.config.splats;
-  RequireMemory(options);
+  if (const std::string why_not = TooLittleMemory(options); !why_not.empty()) {
+    throw InputError("{}", why_not);
+  }
   const std::optional<SurfacePoints> surfaces =
       FindSurfacePoints(field, scene.train, options.count, stop, progress);
   if (!surfaces) return std::nullopt;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "nerf/config/config.h"
@@ -25,6 +26,9 @@ struct GaussianScene {
 // Throws InputError for linear photographs, to which Gaussians are not fitted yet.
 //   data  must outlive the result
 GaussianScene GaussianSceneOf(const Model& field, const Dataset& data);
+
+// Why there is too little memory for a fit; empty: there is enough.
+std::string TooLittleMemory(const SplatOptions& options);
 
 // Reports the effects of a configuration that only the training of the field simulates.
 void WarnOfFieldsEffects(const Config& config, const PipelineListener& listener);

@@ -1,12 +1,14 @@
 #include "nerf/pipeline/gaussian_session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "nerf/base/input_error.h"
 #include "nerf/model/representation_record.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/prepared_scene.h"
+#include "nerf/splats/gaussian_ply.h"
 #include "sfm/transforms_json.h"
 
 namespace nerf {
@@ -29,9 +31,20 @@ Config ConfigOf(const Config& of_run, const std::vector<std::string>& assignment
   return ConfigFromJson(json, "splats");
 }
 
+// Throws InputError where that is too few, or too many.
+int CountFor(double megabytes, const Config& config) {
+  const int order = config.effects.view_dependence ? config.splats.harmonics_order : 0;
+  const double count = std::floor(1e6 * megabytes / static_cast<double>(BytesInPly(order)));
+  constexpr double kFewest = 16, kMost = 1 << 24;  // as splats.count
+  if (!(count >= kFewest && count <= kMost)) {
+    throw InputError("--megabytes {}: would be {:.0f} Gaussians; {:.0f} to {:.0f} are possible",
+                     megabytes, count, kFewest, kMost);
+  }
+  return static_cast<int>(count);
+}
+
 // What was compared before is overwritten.
-void ForgetReached(const fs::path& run) {
-  RepresentationRecord record = ReadRepresentation(run);
+void ForgetReached(RepresentationRecord& record, const fs::path& run) {
   if (!record.reached && !record.splats_stand) return;
   record.ForgetReached();
   WriteRepresentation(record, run);
@@ -57,6 +70,8 @@ std::optional<GaussianSession> MakeGaussians(const GaussianRequest& request, con
   } else {
     model.config = ConfigOf(model.config, request.assignments);
     plan.steps = model.config.splats.steps;
+    if (request.megabytes > 0)
+      model.config.splats.count = CountFor(request.megabytes, model.config);
   }
   const Dataset data =
       LoadPhotographs(sfm::ReadTransformsJson(PosesPath(request.run)), model.config,
@@ -75,13 +90,18 @@ std::optional<GaussianSession> MakeGaussians(const GaussianRequest& request, con
   if (request.time_budget > 0) {
     plan.seconds = std::max(kLeastFitSeconds, request.time_budget - watch.Seconds());
   }
-  ForgetReached(request.run);
+  RepresentationRecord record = ReadRepresentation(request.run);
+  const bool stood = record.splats_stand;
+  plan.before_writing = [&] { ForgetReached(record, request.run); };
   GaussianSession session;
   session.fit = FitGaussians(scene, std::move(*start), &validation, plan, stop, listener).summary;
-  if (!session.fit.finished || validation.Empty()) return session;
-  session.reached = ComparedPsnr{validation.Psnr(model), session.fit.psnr};
-  RepresentationRecord record = ReadRepresentation(request.run);
-  record.reached = session.reached;
+  if (!session.fit.finished) return session;
+  if (validation.Empty()) {
+    record.splats_stand = stood;
+  } else {
+    session.reached = ComparedPsnr{validation.Psnr(model), session.fit.psnr};
+    record.reached = session.reached;
+  }
   WriteRepresentation(record, request.run);
   return session;
 }

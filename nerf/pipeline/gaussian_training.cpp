@@ -19,31 +19,47 @@ class FitClock {
  public:
   //   spent  seconds, before
   FitClock(const GaussianPlan& plan, const SplatOptions& options, double spent)
-      : plan_(plan), options_(options), spent_(spent) {}
+      : options_(options), steps_(static_cast<double>(plan.steps)), spent_(spent) {
+    if (plan.seconds > 0) seconds_ = spent + plan.seconds;
+  }
+
+  // The first iteration follows; preparing may have taken long.
+  void Begin(std::int64_t step) {
+    if (seconds_ > 0) seconds_ = std::max(seconds_, spent_ + watch_.Seconds() / kMostToPrepare);
+    first_step_ = static_cast<double>(step);
+    first_ = UnitsUntil(At(step).fraction);
+  }
 
   double Seconds() const { return spent_ + watch_.Seconds(); }
   // Those of the whole fit; 0: it is by iterations.
-  double PlannedSeconds() const { return plan_.seconds > 0 ? spent_ + plan_.seconds : 0; }
+  double PlannedSeconds() const { return seconds_; }
   // Keeps time for what follows the last iteration.
   void Reserve(double seconds) { reserved_ = std::max(reserved_, seconds); }
 
   FitProgress At(std::int64_t step) const {
     const auto taken = static_cast<double>(step);
-    if (plan_.seconds == 0) {
-      const auto steps = static_cast<double>(plan_.steps);
-      return {std::min(1.0, taken / steps), steps};
-    }
-    const double fraction = std::min(1.0, Seconds() / std::max(1e-3, PlannedSeconds() - reserved_));
-    return {fraction,
-            step < kWarmUp ? kAssumedSteps : taken * StepsUntil(1) / StepsUntil(fraction)};
+    if (seconds_ == 0) return {std::min(1.0, taken / steps_), steps_};
+    const double fraction = std::min(1.0, Seconds() / std::max(1e-3, seconds_ - reserved_));
+    return {fraction, StepsOfAll(taken, UnitsUntil(fraction))};
   }
 
  private:
   static constexpr int kWarmUp = 20;
   static constexpr double kAssumedSteps = 2000;
+  static constexpr double kMostToPrepare = 0.5;  // of the seconds of a fit
 
-  // How many iterations there are until then, in units of those at full resolution.
-  double StepsUntil(double fraction) const {
+  // Iterations of the whole fit, if they go on as they did in this command.
+  double StepsOfAll(double taken, double until) const {
+    const double here = taken - first_step_;
+    if (here >= kWarmUp) {
+      return first_step_ + here * (UnitsUntil(1) - first_) / std::max(1e-9, until - first_);
+    }
+    if (first_step_ > 0) return first_step_ * UnitsUntil(1) / std::max(1e-9, first_);
+    return kAssumedSteps;
+  }
+
+  // The share of iterations until then, in units of those at full resolution.
+  double UnitsUntil(double fraction) const {
     // An iteration at lower resolution takes about so much of the time of another.
     constexpr double kQuarter = 0.25, kHalf = 0.4;
     const double quarter = options_.quarter_resolution;
@@ -53,9 +69,11 @@ class FitClock {
            std::max(0.0, fraction - half);
   }
 
-  const GaussianPlan& plan_;
   const SplatOptions& options_;
-  double spent_, reserved_ = 0;
+  double steps_, spent_;
+  double seconds_ = 0;  // of the whole fit; 0: it is by iterations
+  double reserved_ = 0;
+  double first_step_ = 0, first_ = 0;  // where this command began
   Stopwatch watch_;
 };
 
@@ -75,6 +93,7 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
   FitClock clock(plan, options, start.made.seconds);
   GaussianFit fit(scene.train, scene.facts.has_alpha, std::move(start.state), options, start.near,
                   scene.config.train.seed);
+  clock.Begin(fit.Steps());
   GaussianSummary summary;
   const auto model = [&] {
     return GaussianModel(scene.config, scene.facts, fit.Cloud(), start.near,
@@ -88,9 +107,14 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
     summary.curve.Add(clock.Seconds(), summary.psnr);
     clock.Reserve(watch.Seconds());
   };
+  const auto write = [&](const InterruptedFit* interrupted) {
+    if (plan.file.empty()) return;
+    plan.before_writing();
+    WriteGaussians(model(), plan.file, interrupted);
+  };
   const auto save_to_resume = [&] {
     const InterruptedFit interrupted = {fit.State(), clock.PlannedSeconds(), plan.steps};
-    if (!plan.file.empty()) WriteGaussians(model(), plan.file, &interrupted);
+    write(&interrupted);
   };
   FitProgress progress = clock.At(fit.Steps());
   const auto part = [&] { return static_cast<int>(progress.fraction * kValidations); };
@@ -106,7 +130,7 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
   summary.finished = progress.fraction >= 1 || summary.reached_target;
   if (summary.finished) {
     validate();
-    if (!plan.file.empty()) WriteGaussians(model(), plan.file);
+    write(nullptr);
   } else {
     save_to_resume();
   }

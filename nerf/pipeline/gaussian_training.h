@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "nerf/pipeline/events.h"
@@ -21,6 +22,7 @@ struct GaussianPlan {
   std::filesystem::path file = {};  // RUN/splats.nerf; empty: nothing is written
   std::int64_t checkpoint_every = 0;  // iterations; 0: only at the end
   double target_psnr = 0;             // dB, on validation photographs; 0: none
+  std::function<void()> before_writing = [] {};
 };
 
 struct GaussianResult {

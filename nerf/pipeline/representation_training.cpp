@@ -44,8 +44,16 @@ class Training {
 
   RepresentationsTrained Run() {
     if (!record_.makes_splats && !Decide()) return Result(field_.finished);
-    if (*record_.makes_splats && HasBudget()) trainer_.EndAt(record_.field_seconds);
+    if (*record_.makes_splats && HasBudget()) {
+      // Where it has ended in an earlier command, it has, whatever the clock says.
+      const bool has_ended = record_.field_steps == trainer_.Steps();
+      trainer_.EndAt(has_ended ? trainer_.SpentSeconds() : record_.field_seconds);
+    }
     TrainField(1);
+    if (field_.finished && *record_.makes_splats && record_.field_steps != field_.step) {
+      record_.field_steps = field_.step;
+      WriteRepresentation(record_, run_);
+    }
     if (!field_.finished || field_.reached_target || !*record_.makes_splats) {
       return Result(field_.finished);
     }
@@ -78,27 +86,17 @@ class Training {
            OpenGaussians(run_)->Made().field_step == trainer_.Steps();
   }
 
-  // Why no Gaussians can be made; empty: they can.
-  std::string WhyNot() const {
-    if (data_.encoding == ColorEncoding::kLinear) {
-      return "Gaussians are not fitted to linear photographs";
-    }
-    if (options_.representation == Representation::kAuto && data_.validation.empty()) {
-      return "without validation photographs nothing can be compared";
-    }
-    return "";
-  }
-
   // Trains the field up to the trial, and decides. False where training has ended before.
   bool Decide() {
     RepresentationDecided decided;
     if (options_.representation == Representation::kSplats) {
-      if (const std::string why_not = WhyNot(); !why_not.empty()) {
-        throw InputError("train.representation splats: {}; use field", why_not);
+      if (const std::string why_not = WhyNoGaussians(trainer_.GetModel().config, data_);
+          !why_not.empty()) {
+        throw InputError("train.representation splats: {}; or use field", why_not);
       }
       decided.makes_splats = true;
     } else if (options_.representation == Representation::kAuto) {
-      decided.why_not = WhyNot();
+      decided.why_not = WhyNoGaussians(trainer_.GetModel().config, data_);
       if (decided.why_not.empty() && !DecideByTrial(decided)) return false;
     }
     record_.makes_splats = decided.makes_splats;
@@ -142,22 +140,29 @@ class Training {
 
   // The field is trained: where Gaussians were not asked for by name, it stands without them.
   bool MakeSplatsOrKeepField() {
-    const bool is_asked_for = options_.representation == Representation::kSplats;
-    const bool goes_on = HasItsSplats();
+    GaussianPlan plan;
+    plan.steps = SplatSteps();
+    std::optional<GaussianStart> again;
+    const bool has_its = HasItsSplats();
+    if (has_its) again = StartAgain(GaussiansPath(run_), plan);  // errors name the file
     try {
-      return MakeSplats();
+      if (has_its && !again) {
+        RecordEndedBefore();
+        return true;
+      }
+      return MakeSplats(std::move(again), plan);
     } catch (const InputError& error) {
-      if (is_asked_for || goes_on) throw;
+      if (options_.representation == Representation::kSplats) throw;
       return KeepField(error);
     } catch (const NonFiniteError& error) {
-      if (is_asked_for) throw;
+      if (options_.representation == Representation::kSplats) throw;
       return KeepField(error);
     }
   }
 
   // Without Gaussians, in the time that was meant for them.
   bool KeepField(const std::exception& error) {
-    listener_(Warning{fmt::format("no Gaussians, the field is kept: {}", error.what())});
+    listener_(GaussiansFailed{error.what()});
     if (HasItsSplats()) RemoveAll(GaussiansPath(run_));  // as far as the fit went
     record_.makes_splats = false;
     record_.field_seconds = 0;
@@ -180,42 +185,38 @@ class Training {
     WriteRepresentation(record_, run_);
   }
 
-  // Of a fit that ended in an earlier command, maybe before it was compared.
-  double PsnrOfEnded(const GaussianValidation& validation) const {
-    if (validation.Empty()) return 0;
-    if (record_.reached) return record_.reached->splats;
+  // A fit that ended in an earlier command, maybe before it was compared.
+  void RecordEndedBefore() {
+    const GaussianScene scene = GaussianSceneOf(trainer_.GetModel(), data_);
+    const GaussianValidation validation(scene, data_);
     const auto model = OpenGaussians(run_);
-    return validation.Psnr(model->Cloud(), model->Near());
+    const double psnr = record_.reached      ? record_.reached->splats
+                        : validation.Empty() ? 0
+                                             : validation.Psnr(model->Cloud(), model->Near());
+    RecordEnd(validation, psnr);
   }
 
   // False where it was stopped.
-  bool MakeSplats() {
+  //   again  where a fit was interrupted; its plan is in `plan`
+  bool MakeSplats(std::optional<GaussianStart> again, GaussianPlan plan) {
     const GaussianScene scene = GaussianSceneOf(trainer_.GetModel(), data_);
     const GaussianValidation validation(scene, data_);
-    GaussianPlan plan;
-    plan.steps = SplatSteps();
-    std::optional<GaussianStart> start;
-    if (HasItsSplats()) {
-      start = StartAgain(GaussiansPath(run_), plan);
-      if (!start) {
-        RecordEnd(validation, PsnrOfEnded(validation));
-        return true;
-      }
-    } else {
+    std::optional<GaussianStart> start = std::move(again);
+    if (!start) {
       WarnOfFieldsEffects(scene.config, listener_);
       const auto field = ModelSnapshot::Copy(trainer_.GetModel(), trainer_.Steps());
       start = StartAtSurfaces(*field, scene, stop_, [&](std::size_t done) {
         listener_(SurfacesRendered{done, scene.train.size()});
       });
       if (!start) return false;
+      if (HasBudget()) {
+        const double left = options_.time_budget - kEndSeconds - trainer_.SpentSeconds();
+        plan.seconds = std::max(kLeastFitSeconds, left);
+      }
     }
     plan.file = GaussiansPath(run_);
     plan.checkpoint_every = options_.checkpoint_every;
     plan.target_psnr = options_.target_psnr;
-    if (HasBudget()) {
-      const double spent = trainer_.SpentSeconds() + start->made.seconds;
-      plan.seconds = std::max(kLeastFitSeconds, options_.time_budget - kEndSeconds - spent);
-    }
     const GaussianSummary fit =
         FitGaussians(scene, std::move(*start), &validation, plan, stop_, listener_).summary;
     if (fit.finished) RecordEnd(validation, fit.psnr);
@@ -237,6 +238,16 @@ class Training {
 };
 
 }  // namespace
+
+std::string WhyNoGaussians(const Config& config, const Dataset& data) {
+  if (data.encoding == ColorEncoding::kLinear) {
+    return "Gaussians are not fitted to linear photographs";
+  }
+  if (config.train.representation == Representation::kAuto && data.validation.empty()) {
+    return "without validation photographs nothing can be compared";
+  }
+  return TooLittleMemory(config.splats);
+}
 
 RepresentationsTrained TrainRepresentations(Trainer& trainer, const Dataset& data,
                                             const fs::path& run, const std::atomic<bool>& stop,

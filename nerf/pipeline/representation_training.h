@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <string>
 
 #include "nerf/model/representation_record.h"
 #include "nerf/pipeline/gaussian_training.h"
@@ -15,6 +16,10 @@ struct RepresentationsTrained {
   bool finished = false;        // both; false: stopped on request, can be resumed
   bool reached_target = false;  // train.target_psnr, by either
 };
+
+// Why no Gaussians can be fitted to a capture, or `auto` has nothing to compare them by; empty:
+// they can.
+std::string WhyNoGaussians(const Config& config, const Dataset& data);
 
 // Trains a field, and Gaussians beside it where train.representation asks for them or a trial
 // promises that they will be better (TryGaussians). With a time budget they divide it

@@ -20,8 +20,9 @@ constexpr double kLeastFit = 0.5;
 constexpr int kLongestSide = 160;  // pixels
 constexpr int kFewerGaussians = 8;
 constexpr double kHalfResolution = 0.3;
-// dB. The field will learn more until the end than the Gaussians of the trial lack.
-constexpr double kPromise = 0.3;
+// dB. Until the end a field gains 1.5 to 3 dB more than Gaussians do (fox, chair, sample; 60 and 120
+// s). Captures on which Gaussians end ahead were ahead by 2.6 dB or more here, others by 1.4 or less.
+constexpr double kPromise = 1.5;
 
 // The scene at a resolution at which a trial is short.
 GaussianScene ReducedScene(const Model& field, const Dataset& data) {

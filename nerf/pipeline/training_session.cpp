@@ -192,8 +192,12 @@ void TrainingSession::PlanTimeBudget() {
   }
   trainer_ = std::make_unique<Trainer>(config_, facts_, data_, request_.run, spent);
   if (budget == 0 || request_.preset_is_given) return;
-  const BudgetPlan plan = PlanBudget(*trainer_, budget - spent);
-  listener_(BudgetPlanned{budget, plan.preset, plan.steps});
+  // Where a trial may give the rest of the time to Gaussians, the preset is for the field's part.
+  const bool has_splats = config_.train.representation != Representation::kField &&
+                          WhyNoGaussians(config_, data_).empty();
+  const double share = has_splats ? 1 - config_.splats.share : 1;
+  const BudgetPlan plan = PlanBudget(*trainer_, share * (budget - spent));
+  listener_(BudgetPlanned{budget, share * (budget - spent), plan.preset, plan.steps});
   if (plan.preset == request_.preset) return;
   config_ = ConfigWithDecisions(plan.preset);
   WriteConfig();

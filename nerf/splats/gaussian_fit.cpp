@@ -59,9 +59,13 @@ GaussianFit::GaussianFit(std::vector<TargetView> views, bool has_alpha, Gaussian
       near_(near),
       state_(std::move(begin)) {
   double pixels = 0;
-  for (const TargetView& view : views_) pixels += static_cast<double>(PixelCount(view.camera));
+  int first_kept = 1;  // in full a picture is made as fast as it is read
+  for (const TargetView& view : views_) {
+    pixels += static_cast<double>(PixelCount(view.camera));
+    if (view.halvings > 0) first_kept = 0;  // but not where it is of a reduced photograph
+  }
   if (pixels <= kMostPixelsKept) {
-    for (int halvings = 1; halvings < kResolutions; ++halvings) {
+    for (int halvings = first_kept; halvings < kResolutions; ++halvings) {
       if (halvings > HalvingsAt(options_, 0)) break;
       pictures_[halvings].resize(views_.size());
       ParallelForEach(static_cast<std::int64_t>(views_.size()), [&](std::int64_t i) {

@@ -77,7 +77,8 @@ class GaussianFit {
   std::uint64_t seed_;
   std::vector<TargetView> views_;
   double near_;
-  // By the number of halvings; empty in full, and where they would need too much memory.
+  // By the number of halvings; empty where they are made for each step: in full, and where all of
+  // them would need too much memory.
   std::array<std::vector<Picture>, kResolutions> pictures_;
   Picture picture_;                  // then that of this step
   std::vector<std::uint32_t> turn_;  // the order of the photographs

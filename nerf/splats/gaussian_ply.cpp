@@ -82,6 +82,10 @@ bool SetGaussian(GaussianCloud& cloud, std::int64_t i, const std::vector<double>
 
 }  // namespace
 
+std::int64_t BytesInPly(int harmonics_order) {
+  return static_cast<std::int64_t>(sizeof(float) * PropertyNames(harmonics_order).size());
+}
+
 void WriteGaussianPly(const std::filesystem::path& file, const GaussianCloud& cloud,
                       const SceneNormalization& normalized_from_world) {
   const int rest = kernels::HarmonicsOf(cloud.order) - 1;

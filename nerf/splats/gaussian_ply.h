@@ -19,6 +19,9 @@ namespace nerf {
 void WriteGaussianPly(const std::filesystem::path& file, const GaussianCloud& cloud,
                       const SceneNormalization& normalized_from_world);
 
+// Bytes of a Gaussian in the file.
+std::int64_t BytesInPly(int harmonics_order);
+
 struct GaussianPly {
   GaussianCloud cloud;        // in the frame and units of the file
   std::int64_t left_out = 0;  // Gaussians with a value that is not finite

@@ -16,8 +16,8 @@ constexpr std::uint64_t kSubsetStream = 0x67617573735f5f31ull;
 constexpr std::size_t kNeighbours = 3;
 constexpr double kSmallest = 1e-4, kLargest = 1;  // normalized units
 // Small and opaque: the points are on surfaces. Large and transparent ones (size 1, opacity 0.1)
-// cost four times as many contributions to a pixel, and end lower: on validation photographs, after
-// 40 s of the fox by 0.4 dB, of the chair by 0.5, of two_groups by 1.6.
+// cost several times as many contributions to a pixel, and end lower: on validation photographs,
+// after 40 s of the fox by 0.5 dB, of the chair by 0.5, of two_groups by 1.8.
 constexpr double kOpacity = 0.8;
 constexpr double kSize = 0.42;  // of the distance to the nearest points
 // Black before black has no gradient, and points without a colour are black.

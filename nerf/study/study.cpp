@@ -60,6 +60,11 @@ json CostsOf(const fs::path& metrics) {
   return {{"stage_seconds", stages}, {"validation_curve", curve}, {"peak_megabytes", peak}};
 }
 
+// What is not finite is on no front; JSON has null for it.
+double NumberOf(const json& value) {
+  return value.is_number() ? value.get<double>() : std::nan("");
+}
+
 }  // namespace
 
 Study::Study(PreparedScene scene, const StudyOptions& options, fs::path folder,
@@ -107,6 +112,13 @@ void Study::ReadEarlierResults() {
     throw InputError(
         "{}: is of an earlier version, which did not decide effects; choose another folder with -o",
         JsonPath(folder_).string());
+  }
+  const json settings = before.value("settings", json::array());
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (i >= settings_.size() || settings[i].value("name", "") != settings_[i].name) {
+      throw InputError("{}: is of a version with other settings; choose another folder with -o",
+                       JsonPath(folder_).string());
+    }
   }
   results_ = before;
   decided_ = results_.value("effects", std::vector<std::string>());
@@ -200,7 +212,9 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
   try {
     trained = TrainRepresentations(trainer, photographs.data, run, stop, listener_);
     if (!trained.finished) return {};
-  } catch (const InputError& error) {  // no Gaussians of such photographs, or of such a field
+  } catch (const std::exception& error) {
+    // No Gaussians of such photographs, or of such a field; or their fit diverged.
+    if (config.train.representation != Representation::kSplats) throw;
     why_not = error.what();
   }
   json result = CostsOf(MetricsPath(run));
@@ -234,12 +248,12 @@ void Study::MarkFronts() {
   std::vector<CostAndValue> trainings, renderings;
   std::vector<json*> qualities;
   for (json& setting : results_["settings"]) {
-    // One that was left out has none; what is not finite is on no front.
+    // One that was left out has none.
     const json psnr = setting["qualities"].empty() ? json() : setting["qualities"][0]["psnr"];
-    trainings.push_back({setting["seconds"], psnr.is_number() ? psnr.get<double>() : std::nan("")});
+    trainings.push_back({setting["seconds"], NumberOf(psnr)});
     setting["on_training_front"] = false;
     for (json& quality : setting["qualities"]) {
-      renderings.push_back({quality["seconds_per_frame"], quality["psnr"]});
+      renderings.push_back({quality["seconds_per_frame"], NumberOf(quality["psnr"])});
       quality["on_rendering_front"] = false;
       qualities.push_back(&quality);
     }

@@ -154,6 +154,17 @@ TEST_F(SplatCommand, TheSameSeedGivesTheSameBits) {
   EXPECT_TRUE(once == written("again.ply"));  // not printed where it fails
 }
 
+TEST_F(SplatCommand, AFileOfTheSizeThatWasAskedForIsWritten) {
+  const auto made = RunNerf("splat " + Path("run") + " --set splats.steps=2 --megabytes 0.5");
+  ASSERT_EQ(made.exit_status, 0) << made.output;
+  ASSERT_EQ(RunNerf("splat " + Path("run") + " --ply " + Path("small.ply")).exit_status, 0);
+  EXPECT_LT(fs::file_size(Path("small.ply")), 502000);  // with its header
+  EXPECT_GT(fs::file_size(Path("small.ply")), 490000);
+  const auto tiny = RunNerf("splat " + Path("run") + " --megabytes 0.001");
+  EXPECT_EQ(tiny.exit_status, 2);
+  EXPECT_THAT(tiny.output, HasSubstr("--megabytes 0.001: would be 4 Gaussians"));
+}
+
 TEST_F(SplatCommand, WhatCannotBeDoneIsNamed) {
   fs::remove(Path("run/splats.nerf"));
   const auto without = RunNerf("render " + Path("run") + " --with splats -o " + Path("none"));

@@ -65,6 +65,35 @@ TEST(RepresentationTraining, AnInterruptedFitKeepsItsPlan) {
   EXPECT_GT(start->made.seconds, 0);
 }
 
+// With a time budget: whatever the clock says, the field has ended, and the fit goes on.
+TEST(RepresentationTraining, AFitWithinABudgetGoesOnWhereItWas) {
+  const test::SmallCapture small = CaptureWithValidation();
+  Config config = ConfigOf(Representation::kAuto);
+  config.train.time_budget = 6;
+  test::ScratchFolder run;
+  RepresentationRecord decided;
+  decided.makes_splats = true;
+  decided.field_seconds = 2;
+  WriteRepresentation(decided, run.path());
+  TrainUntil<GaussiansStepped>(10, small, config, run.path());
+  const FitFacts before = OpenGaussians(run.path())->Made();
+  // As if writing had taken long: the clock is behind.
+  Checkpoint checkpoint = ReadRunCheckpoint(run.path());
+  checkpoint.meta["spent_seconds"] = 1.0;
+  WriteCheckpoint(CheckpointPath(run.path()), checkpoint);
+  std::int64_t first = 0;
+  const auto listener = [&](const PipelineEvent& event) {
+    const auto* step = std::get_if<GaussiansStepped>(&event);
+    if (step && first == 0) first = step->step;
+  };
+  Trainer trainer(ReadRunCheckpoint(run.path()), small.data, run.path());
+  EXPECT_TRUE(
+      TrainRepresentations(trainer, small.data, run.path(), test::never_stop, listener).finished);
+  EXPECT_EQ(trainer.Steps(), before.field_step);
+  EXPECT_EQ(first, 11);
+  EXPECT_TRUE(ReadRepresentation(run.path()).reached);
+}
+
 TEST(RepresentationTraining, ADamagedFitIsNamed) {
   const test::SmallCapture small = CaptureWithValidation();
   test::ScratchFolder run;

@@ -70,11 +70,11 @@ TEST(RepresentationTraining, AFieldGetsTheTimeOfGaussiansThatCannotBeMade) {
   std::string warning;
   const Stopwatch watch;
   const auto listener = [&](const PipelineEvent& event) {
-    if (const auto* said = std::get_if<Warning>(&event)) warning = said->text;
+    if (const auto* failed = std::get_if<GaussiansFailed>(&event)) warning = failed->why;
   };
   const RepresentationsTrained trained = Train(small, config, run.path(), never_stop, listener);
   EXPECT_TRUE(trained.finished);
-  EXPECT_THAT(warning, HasSubstr("the field is kept: the loss of iteration"));
+  EXPECT_THAT(warning, HasSubstr("the loss of iteration"));
   EXPECT_GT(watch.Seconds(), 3);
   EXPECT_FALSE(fs::exists(GaussiansPath(run.path())));
   EXPECT_EQ(ReadRepresentation(run.path()).makes_splats, false);
@@ -152,7 +152,7 @@ TEST(RepresentationTraining, LinearPhotographsAreRefusedWhereGaussiansAreAskedFo
   test::ScratchFolder run;
   EXPECT_THAT(
       test::InputErrorOf([&] { Train(small, ConfigOf(Representation::kSplats), run.path()); }),
-      HasSubstr("linear photographs; use field"));
+      HasSubstr("linear photographs; or use field"));
 }
 
 TEST(RepresentationTraining, ATargetThatTheFieldReachesEndsBoth) {

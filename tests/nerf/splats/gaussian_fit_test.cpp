@@ -130,6 +130,32 @@ TEST(GaussianFit, InvisibleGaussiansAreUsed) {
   EXPECT_GT(visible(), 100);
 }
 
+// The two are 1.5 times smaller, and the mean is between them.
+TEST(GaussianFit, SplitsAGaussianAboutItsMean) {
+  const std::vector<View> views = Photographs(Scene());
+  const std::vector<ColoredPoint> one = {{Eigen::Vector3d(0, 0, 3), {0.9f, 0.2f, 0.1f}}};
+  GaussianCloud cloud = GaussiansAtPoints(one, 2, 0, 1);  // the other is invisible
+  for (int k = 0; k < 3; ++k) cloud.At(0, kernels::kLogScaleRow + k) = std::log(0.4f);
+  SplatOptions options;
+  options.split_every = 1;
+  options.split_share = 0.5;
+  options.mean_rate = options.scale_rate = options.rotation_rate = options.opacity_rate = 0;
+  options.color_rate = options.harmonics_rate = 0;
+  GaussianFit fit(TargetViewsOf(views), false, BeginFit(cloud), options, kNear, 1);
+  fit.Step({0.1, 100});
+  const GaussianCloud& two = fit.Cloud();
+  double apart = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float a = two.At(0, kernels::kMeanRow + k), b = two.At(1, kernels::kMeanRow + k);
+    EXPECT_NEAR((a + b) / 2, k == 2 ? 3 : 0, 1e-5);
+    apart += std::abs(a - b);
+    for (const int i : {0, 1}) {
+      EXPECT_NEAR(two.At(i, kernels::kLogScaleRow + k), std::log(0.4 / 1.5), 1e-5);
+    }
+  }
+  EXPECT_GT(apart, 0.05);
+}
+
 // Points of COLMAP may have no colour, and black before black would have no gradient.
 TEST(GaussianFit, BeginsAtPointsWithoutColour) {
   const std::vector<View> views = Photographs(Scene());
