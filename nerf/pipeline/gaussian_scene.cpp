@@ -17,6 +17,10 @@ namespace {
 // hang in front of it, to explain one photograph.
 constexpr double kNearShare = 0.5;
 
+// A field takes seconds to render the depth for so many; more would cost more time than they are
+// worth: splitting makes the other Gaussians.
+constexpr int kMostPoints = 80000;
+
 // Of a Gaussian beside its parameters and their two moments: projections, and what it has in about
 // ten tiles.
 constexpr double kBytesBeside = 700;
@@ -78,7 +82,7 @@ std::optional<GaussianStart> StartAtSurfaces(const ModelSnapshot& field, const G
     throw InputError("{}", why_not);
   }
   const std::optional<SurfacePoints> surfaces =
-      FindSurfacePoints(field, scene.train, options.count, stop, progress);
+      FindSurfacePoints(field, scene.train, std::min(options.count, kMostPoints), stop, progress);
   if (!surfaces) return std::nullopt;
   if (surfaces->points.empty()) {
     throw InputError("the views of the field agree on no surface; train it longer");
