@@ -140,7 +140,8 @@ Matched ReadMatched(const PosedImages& posed, const std::vector<Photo>& photos,
         matched.features[i] = LookAt(posed, matched.image_of[i], positions[i]);
       },
       threads);
-  for (const auto& [pair, count] : database.VerifiedPairs()) {
+  for (const auto& verified : database.VerifiedPairs()) {
+    const auto& pair = verified.first;  // no binding: clang 14 does not capture it
     std::vector<FeatureMatch> matches = database.ReadVerified(pair);
     std::erase_if(matches, [&](const FeatureMatch& match) {
       return !matched.features[pair.first].rgb[match.first] ||
