@@ -45,11 +45,11 @@ void RunSplat(SplatArguments& arguments) {
     return;
   }
   const GaussianRequest& request = arguments.request;
-  if (request.resume && (!request.assignments.empty() || request.megabytes != 0)) {
-    throw InputError("--resume continues with the options of the fit; omit --set and --megabytes");
-  }
-  if (!(request.megabytes >= 0)) {
-    throw InputError("--megabytes {}: use more than 0", request.megabytes);
+  const bool has_options = !request.assignments.empty() || request.megabytes > 0;
+  if (request.resume && (has_options || request.seconds_per_frame > 0)) {
+    throw InputError(
+        "--resume continues with the options of the fit; omit --set, --megabytes and "
+        "--seconds-per-frame");
   }
   const Stopwatch watch;
   UseThreads(arguments.threads);
@@ -91,9 +91,16 @@ void AddSplatCommand(CLI::App& app) {
                                "override a value: splats.count=100000; repeatable")
                   ->allow_extra_args(false)
                   ->take_all();
-  auto* megabytes = command->add_option("--megabytes", arguments->request.megabytes,
-                                        "as many Gaussians as a PLY file of this size has "
-                                        "[splats.count]");
+  auto* megabytes = command
+                        ->add_option("--megabytes", arguments->request.megabytes,
+                                     "as many Gaussians as a PLY file of this size has "
+                                     "[splats.count]")
+                        ->check(CLI::PositiveNumber);
+  auto* frame = command
+                    ->add_option("--seconds-per-frame", arguments->request.seconds_per_frame,
+                                 "at most as many as this machine draws in this time, at the "
+                                 "resolution of the photographs: 0.005")
+                    ->check(CLI::PositiveNumber);
   auto* resume =
       command->add_flag("--resume", arguments->request.resume,
                         "continue a fit that was interrupted, with its options and its plan");
@@ -103,6 +110,7 @@ void AddSplatCommand(CLI::App& app) {
       ->excludes(resume)
       ->excludes(budget)
       ->excludes(megabytes)
+      ->excludes(frame)
       ->excludes(set);
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
@@ -113,6 +121,7 @@ void AddSplatCommand(CLI::App& app) {
       "  nerf splat runs/fox\n"
       "  nerf splat runs/fox --time-budget 2m --set splats.count=100000\n"
       "  nerf splat runs/fox --megabytes 10\n"
+      "  nerf splat runs/fox --seconds-per-frame 0.005\n"
       "  nerf splat runs/fox --ply fox.ply\n"
       "  nerf render runs/fox --with splats --path orbit");
   command->callback([arguments] { RunSplat(*arguments); });

@@ -214,6 +214,7 @@ void TrainingDisplay::Show(const GaussiansEnded& event) {
   const GaussianSummary& fit = event.fit;
   Print("{} {} Gaussians in {} iterations, {:.1f} s\n", fit.finished ? "fitted" : "stopped, kept",
         fit.gaussians, fit.steps, fit.seconds);
+  if (fit.seconds_per_frame > 0) Print("a frame takes {:.1f} ms\n", 1e3 * fit.seconds_per_frame);
   if (!event.reached) return;
   const auto [field, splats] = *event.reached;
   const auto last = fit.curve.SecondsOfLast(kGain);

@@ -8,6 +8,7 @@
 #include "nerf/base/parallel.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/scene/dataset.h"
+#include "nerf/scene/lens_coverage.h"
 #include "nerf/splats/gaussian_camera.h"
 #include "nerf/splats/gaussian_renderer.h"
 
@@ -20,7 +21,8 @@ constexpr std::int64_t kRowsAtOnce = 16;
 constexpr char kGaussians[] = "gaussians", kFirstMoment[] = "first_moment",
                kSecondMoment[] = "second_moment", kNeed[] = "need";
 // Of its JSON.
-constexpr char kPlannedSeconds[] = "planned_seconds", kPlannedSteps[] = "planned_steps";
+constexpr char kPlannedSeconds[] = "planned_seconds", kPlannedSteps[] = "planned_steps",
+               kSecondsPerFrame[] = "seconds_per_frame";
 
 GaussianModel ModelOf(const Checkpoint& checkpoint, const std::filesystem::path& file) {
   try {
@@ -78,6 +80,25 @@ RenderedView ViewOf(const GaussianPicture& picture, const SceneFacts& scene) {
   return view;
 }
 
+// Where the lens covers nothing there is the background, as in pictures of the field.
+void EmptyOutsideLens(const Camera& camera, const SceneFacts& scene, RenderedView& view) {
+  const std::vector<std::uint32_t> covered = PixelsInLens(camera);
+  if (covered.empty()) return;
+  const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
+  auto next = covered.begin();
+  for (std::size_t pixel = 0; pixel < view.opacity.pixels.size(); ++pixel) {
+    if (next != covered.end() && *next == pixel) {
+      ++next;
+      continue;
+    }
+    std::copy_n(background.data(), 3, &view.rgb.pixels[3 * pixel]);
+    view.opacity.pixels[pixel] = view.depth.pixels[pixel] = 0;
+    if (view.median_depth.pixels.empty()) continue;
+    view.median_depth.pixels[pixel] = 0;
+    std::fill_n(&view.normal.pixels[3 * pixel], 3, 0.0f);
+  }
+}
+
 void AddSurface(const GaussianSurface& surface, RenderedView& view) {
   const int width = view.rgb.width, height = view.rgb.height;
   view.median_depth = Image(width, height, 1, ColorEncoding::kLinear);
@@ -109,6 +130,7 @@ RenderedView GaussianModel::Render(const ViewRequest& view) const {
   std::unique_ptr<GaussianRenderer> renderer = renderers_->Take();
   RenderedView rendered = ViewOf(renderer->Draw(camera, cloud_.Parameters()), scene_);
   if (view.surface) AddSurface(renderer->FindSurface(camera, cloud_.Parameters()), rendered);
+  EmptyOutsideLens(view.camera, scene_, rendered);
   rendered.samples = renderer->Visible();
   renderers_->Give(std::move(renderer));
   if (view.progress) {
@@ -132,6 +154,7 @@ void WriteGaussians(const GaussianModel& model, const std::filesystem::path& fil
   if (fit != nullptr) {
     checkpoint.meta[kPlannedSeconds] = fit->planned_seconds;
     checkpoint.meta[kPlannedSteps] = fit->planned_steps;
+    checkpoint.meta[kSecondsPerFrame] = fit->seconds_per_frame;
     checkpoint.tensors[kFirstMoment] = fit->state.first_moment;
     checkpoint.tensors[kSecondMoment] = fit->state.second_moment;
     checkpoint.tensors[kNeed] = fit->state.need;
@@ -155,6 +178,7 @@ std::optional<InterruptedFit> ReadInterruptedFit(const std::filesystem::path& fi
   try {
     fit.planned_seconds = meta.at(kPlannedSeconds);
     fit.planned_steps = meta.at(kPlannedSteps);
+    fit.seconds_per_frame = meta.value(kSecondsPerFrame, 0.0);
     CopyTensor(checkpoint.tensors, kFirstMoment, fit.state.first_moment);
     CopyTensor(checkpoint.tensors, kSecondMoment, fit.state.second_moment);
     CopyTensor(checkpoint.tensors, kNeed, fit.state.need);
@@ -162,8 +186,8 @@ std::optional<InterruptedFit> ReadInterruptedFit(const std::filesystem::path& fi
     throw InputError("{}: the fit cannot be resumed ({}); make the Gaussians again with nerf splat",
                      file.string(), error.what());
   }
-  if (!(fit.planned_seconds >= 0 && model.Made().seconds >= 0) || model.Step() < 0 ||
-      (fit.planned_seconds == 0 && fit.planned_steps < 1)) {
+  if (!(fit.planned_seconds >= 0 && fit.seconds_per_frame >= 0 && model.Made().seconds >= 0) ||
+      model.Step() < 0 || (fit.planned_seconds == 0 && fit.planned_steps < 1)) {
     throw InputError("{}: the plan of its fit is out of range; make the Gaussians again",
                      file.string());
   }

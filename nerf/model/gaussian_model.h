@@ -50,6 +50,7 @@ struct InterruptedFit {
   // Its plan: the seconds of the whole fit, or where these are 0 its iterations.
   double planned_seconds = 0;
   std::int64_t planned_steps = 0;
+  double seconds_per_frame = 0;  // no more Gaussians than are drawn in this time; 0: no limit
 };
 
 // Writes a model to a file, and reads it back. Throws InputError naming a file that is missing,

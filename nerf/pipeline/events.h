@@ -126,6 +126,7 @@ struct GaussianSummary {
   double seconds = 0;  // of the fit, with what was spent on it before
   double psnr = 0;     // dB, on validation photographs; 0: there are none
   bool reached_target = false;
+  double seconds_per_frame = 0;  // 0: none was asked for
   QualityCurve curve;
 };
 // The field is kept without them, and trained on where there is time.

@@ -70,6 +70,7 @@ std::optional<GaussianSession> MakeGaussians(const GaussianRequest& request, con
   } else {
     model.config = ConfigOf(model.config, request.assignments);
     plan.steps = model.config.splats.steps;
+    plan.seconds_per_frame = request.seconds_per_frame;
     if (request.megabytes > 0)
       model.config.splats.count = CountFor(request.megabytes, model.config);
   }

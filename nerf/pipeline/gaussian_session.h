@@ -17,8 +17,9 @@ struct GaussianRequest {
   // as an interrupted fit was planned.
   double time_budget = 0;
   std::vector<std::string> assignments;  // "splats.key=value"
-  double megabytes = 0;  // as many Gaussians as their PLY file may have; 0: splats.count
-  bool resume = false;   // go on with a fit that was interrupted, with its configuration
+  double megabytes = 0;          // as many Gaussians as their PLY file may have; 0: splats.count
+  double seconds_per_frame = 0;  // see GaussianPlan
+  bool resume = false;           // go on with a fit that was interrupted, with its configuration
 };
 
 struct GaussianSession {

@@ -7,12 +7,15 @@
 #include <utility>
 
 #include "nerf/base/stopwatch.h"
+#include "nerf/pipeline/frame_limit.h"
 #include "nerf/render/non_finite_error.h"
 
 namespace nerf {
 namespace {
 
 constexpr int kValidations = 8;  // in a fit
+// Before the last part of this many nothing is left out any more, so that the fit can recover.
+constexpr int kFrameChecks = 32;
 
 // How far a fit is, by iterations or by time.
 class FitClock {
@@ -113,17 +116,22 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
     WriteGaussians(model(), plan.file, interrupted);
   };
   const auto save_to_resume = [&] {
-    const InterruptedFit interrupted = {fit.State(), clock.PlannedSeconds(), plan.steps};
+    const InterruptedFit interrupted = {fit.State(), clock.PlannedSeconds(), plan.steps,
+                                        plan.seconds_per_frame};
     write(&interrupted);
   };
   FitProgress progress = clock.At(fit.Steps());
   const auto part = [&] { return static_cast<int>(progress.fraction * kValidations); };
+  const auto check = [&] { return static_cast<int>(progress.fraction * kFrameChecks); };
   while (progress.fraction < 1 && !summary.reached_target && !stop) {
-    const int part_before = part();
+    const int part_before = part(), check_before = check();
     const double loss = fit.Step(progress);
     if (!std::isfinite(loss)) ThrowNotFinite(fit, options);
     progress = clock.At(fit.Steps());
     if (part() > part_before && progress.fraction < 1) validate();
+    if (plan.seconds_per_frame > 0 && check() > check_before && check() < kFrameChecks) {
+      KeepToFrameTime(fit, scene.train, start.near, plan.seconds_per_frame);
+    }
     if (plan.checkpoint_every > 0 && fit.Steps() % plan.checkpoint_every == 0) save_to_resume();
     listener(GaussiansStepped{fit.Steps(), progress.fraction, loss, summary.psnr});
   }
@@ -137,6 +145,9 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
   summary.steps = fit.Steps();
   summary.gaussians = fit.Cloud().count;
   summary.seconds = clock.Seconds();
+  if (plan.seconds_per_frame > 0) {
+    summary.seconds_per_frame = SecondsPerFrame(fit.Cloud(), scene.train, start.near);
+  }
   return {model(), summary};
 }
 
@@ -145,6 +156,7 @@ std::optional<GaussianStart> StartAgain(const std::filesystem::path& file, Gauss
   if (!fit) return std::nullopt;
   const GaussianModel model = ReadGaussians(file);
   plan.steps = fit->planned_steps;
+  plan.seconds_per_frame = fit->seconds_per_frame;
   plan.seconds = fit->planned_seconds > 0
                      ? std::max(kLeastFitSeconds, fit->planned_seconds - model.Made().seconds)
                      : 0;

@@ -22,6 +22,8 @@ struct GaussianPlan {
   std::filesystem::path file = {};  // RUN/splats.nerf; empty: nothing is written
   std::int64_t checkpoint_every = 0;  // iterations; 0: only at the end
   double target_psnr = 0;             // dB, on validation photographs; 0: none
+  // As few Gaussians as can be drawn in this time, which depends on the machine; 0: all.
+  double seconds_per_frame = 0;
   std::function<void()> before_writing = [] {};
 };
 

@@ -22,6 +22,9 @@ constexpr int kViewsThatAgree = 2;                          // beside that of th
 constexpr double kSmallestVoxel = 1e-4, kLargestVoxel = 1;  // normalized units
 constexpr int kBisections = 16;
 constexpr double kNearest = 0.02;  // quantile of the distances in a view
+// Of points where a view sees no surface: a sky. From the cameras, which are within 1 unit, they
+// are in the same direction up to a pixel.
+constexpr double kSkyDistance = 500;
 
 struct DepthView {
   Camera camera;
@@ -31,6 +34,11 @@ struct DepthView {
   // The distance of what is seen at a pixel; 0 where it is empty.
   double DistanceAt(int x, int y) const {
     return *rendered.opacity.At(x, y) > kOpaque ? *rendered.depth.At(x, y) : 0.0f;
+  }
+  ColoredPoint PointAt(const Eigen::Vector3d& direction, double distance, int x, int y) const {
+    const float* const rgb = rendered.rgb.At(x, y);
+    return {normalized_from_camera * (distance * direction),
+            Eigen::Vector3f(rgb[0], rgb[1], rgb[2])};
   }
   bool Agrees(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d p = normalized_from_camera.inverse() * point;
@@ -45,23 +53,27 @@ struct DepthView {
   }
 };
 
-std::vector<ColoredPoint> PointsOf(const std::vector<DepthView>& views, std::size_t of) {
+//   has_sky  whether rays that meet no surface see something
+std::vector<ColoredPoint> PointsOf(const std::vector<DepthView>& views, std::size_t of,
+                                   bool has_sky) {
   const DepthView& view = views[of];
   std::vector<ColoredPoint> points;
   for (int y = 0; y < view.camera.height; ++y) {
     for (int x = 0; x < view.camera.width; ++x) {
       const double distance = view.DistanceAt(x, y);
-      if (distance == 0) continue;
+      if (distance == 0 && !has_sky) continue;
       const auto direction = DirectionFromPixel(view.camera, {x + 0.5, y + 0.5});
       if (!direction) continue;
-      const Eigen::Vector3d point = view.normalized_from_camera * (distance * *direction);
+      if (distance == 0) {
+        points.push_back(view.PointAt(*direction, kSkyDistance, x, y));
+        continue;
+      }
+      const ColoredPoint point = view.PointAt(*direction, distance, x, y);
       int agreeing = 0;
       for (std::size_t other = 0; other < views.size() && agreeing < kViewsThatAgree; ++other) {
-        if (other != of && views[other].Agrees(point)) ++agreeing;
+        if (other != of && views[other].Agrees(point.x_in_normalized)) ++agreeing;
       }
-      if (agreeing < kViewsThatAgree) continue;
-      const float* const rgb = view.rendered.rgb.At(x, y);
-      points.push_back({point, Eigen::Vector3f(rgb[0], rgb[1], rgb[2])});
+      if (agreeing >= kViewsThatAgree) points.push_back(point);
     }
   }
   return points;
@@ -134,9 +146,10 @@ std::optional<SurfacePoints> FindSurfacePoints(const SceneModel& model,
     progress(rendered.size());
     if (stop) return std::nullopt;
   }
+  const bool has_sky = !model.Scene().has_alpha;
   std::vector<std::vector<ColoredPoint>> of_view(rendered.size());
   ParallelForEach(static_cast<std::int64_t>(rendered.size()), [&](std::int64_t i) {
-    of_view[i] = PointsOf(rendered, static_cast<std::size_t>(i));
+    of_view[i] = PointsOf(rendered, static_cast<std::size_t>(i), has_sky);
   });
   std::vector<ColoredPoint> points;
   for (const auto& own : of_view) points.insert(points.end(), own.begin(), own.end());

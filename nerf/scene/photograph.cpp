@@ -9,6 +9,7 @@
 #include "nerf/image/image_files.h"
 #include "nerf/image/image_io.h"
 #include "nerf/scene/camera.h"
+#include "nerf/scene/lens_coverage.h"
 
 namespace nerf {
 namespace {
@@ -64,6 +65,17 @@ void Linearize(const PosedImage& image, const Camera& camera, int downscale,
   photograph.pixels = ToLinear(photograph.pixels);
 }
 
+// Marks pixels as invalid that the lens does not cover.
+void LeaveToLens(const PosedImage& image, const Camera& downscaled, Photograph& photograph) {
+  const std::vector<std::uint32_t> covered = PixelsInLens(downscaled);
+  if (covered.empty()) return;
+  photograph.valid_pixels = Intersection(photograph.valid_pixels, covered);
+  if (photograph.valid_pixels.empty()) {
+    throw InputError("{}: its mask leaves only pixels that its lens does not cover; remove it",
+                     image.path.string());
+  }
+}
+
 }  // namespace
 
 Photograph LoadPhotograph(const PosedImages& posed, const PosedImage& image,
@@ -84,6 +96,7 @@ Photograph LoadPhotograph(const PosedImages& posed, const PosedImage& image,
   if (options.linear && pixels.encoding == ColorEncoding::kSrgb) {
     Linearize(image, camera, options.downscale, photograph);
   }
+  LeaveToLens(image, Downscaled(camera, options.downscale), photograph);
   pixels = Downscale(pixels, options.downscale);
   return photograph;
 }

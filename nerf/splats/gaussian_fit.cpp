@@ -20,34 +20,44 @@ namespace {
 using kernels::kGaussiansInBlock;
 
 constexpr std::uint64_t kTurnStream = 0x67617573735f5f32ull;
-constexpr std::uint64_t kSplitStream = 0x67617573735f5f33ull;
 constexpr std::uint64_t kBackgroundStream = 0x67617573735f5f34ull;
 constexpr double kMostPixelsKept = 1e8;  // of all photographs, 6 bytes each
 // Learning rates are those of a fit of so many iterations, and for others times (this / their
 // number)^power.
 constexpr double kRatedSteps = 2000, kRatePower = 0.5;
-// A Gaussian becomes two of this size, a standard deviation of its own apart.
-constexpr float kSplitScale = 1 / 1.5f, kSplitDistance = 0.7f;
 
-// A number of mean 0 and variance 1, by the sum of twelve even ones.
-float RandomNormal(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
-  float sum = -6;
-  for (std::uint64_t k = 0; k < 12; ++k) sum += RandomFloat(seed, stream, 12 * index + k);
-  return sum;
-}
+// Means of a block beyond the unit ball move in proportion to their distance: their rate is for
+// what is within it, and farther away the same step is less in every picture.
+class FarMeans {
+ public:
+  // Before the step.
+  explicit FarMeans(std::span<const float> block) {
+    std::copy_n(block.begin(), before_.size(), before_.begin());
+    for (int l = 0; l < kGaussiansInBlock; ++l) {
+      const Eigen::Map<const Eigen::Vector3f, 0, Eigen::InnerStride<kGaussiansInBlock>> mean(
+          &before_[l]);
+      stride_[l] = std::max(1.0f, mean.norm());
+    }
+  }
+  // After a step as within the ball.
+  void Stride(std::span<float> block) const {
+    for (std::size_t k = 0; k < before_.size(); ++k) {
+      const float more = stride_[k % kGaussiansInBlock] - 1;
+      block[k] += more * (block[k] - before_[k]);
+    }
+  }
+
+ private:
+  static_assert(kernels::kMeanRow == 0);
+  std::array<float, 3 * kGaussiansInBlock> before_{};
+  std::array<float, kGaussiansInBlock> stride_{};
+};
 
 }  // namespace
 
 int HalvingsAt(const SplatOptions& options, double fraction) {
   if (fraction < options.quarter_resolution) return 2;
   return fraction < options.half_resolution ? 1 : 0;
-}
-
-GaussianFitState BeginFit(const GaussianCloud& initial) {
-  GaussianCloud cloud = Reordered(initial, SpatialOrder(initial));
-  const torch::Tensor& values = cloud.parameters;
-  torch::Tensor need = torch::zeros({values.size(0) * kGaussiansInBlock});
-  return {cloud, torch::zeros_like(values), torch::zeros_like(values), need, 0};
 }
 
 GaussianFit::GaussianFit(std::vector<TargetView> views, bool has_alpha, GaussianFitState begin,
@@ -122,7 +132,9 @@ double GaussianFit::Step(const FitProgress& progress) {
       [&](std::int64_t block, std::span<float> gradients, std::span<const float> on_screen) {
         UpdateBlock(block, gradients, on_screen, groups);
       });
-  if (state_.step % options_.split_every == 0 && progress.fraction < options_.split_until) Split();
+  if (state_.step % options_.split_every == 0 && progress.fraction < options_.split_until) {
+    SplitWhereNeeded(state_, options_, seed_);
+  }
   return is_finite_ ? loss : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -165,6 +177,7 @@ void GaussianFit::UpdateBlock(std::int64_t block, std::span<float> gradients,
     const float o = 1 / (1 + std::exp(-parameters[at]));
     gradients[at] += static_cast<float>(options_.opacity_penalty) * o * (1 - o);
   }
+  const FarMeans far({parameters, size});
   for (const RowGroup& group : groups) {
     const std::size_t at = static_cast<std::size_t>(group.first) * kGaussiansInBlock;
     const std::size_t values = static_cast<std::size_t>(group.count) * kGaussiansInBlock;
@@ -173,67 +186,7 @@ void GaussianFit::UpdateBlock(std::int64_t block, std::span<float> gradients,
                                              {second + at, values});
     if (!is_finite) is_finite_ = false;
   }
-}
-
-void GaussianFit::Split() {
-  std::vector<std::int64_t> invisible;
-  std::vector<double> total;  // running sum of the need of visible ones
-  const auto least =
-      static_cast<float>(std::log(options_.least_opacity / (1 - options_.least_opacity)));
-  const float* const need = state_.need.data_ptr<float>();
-  double sum = 0;
-  for (std::int64_t i = 0; i < state_.cloud.count; ++i) {
-    const bool is_visible = state_.cloud.At(i, kernels::kOpacityRow) >= least;
-    if (!is_visible) invisible.push_back(i);
-    sum += is_visible ? static_cast<double>(need[i]) : 0.0;
-    total.push_back(sum);
-  }
-  const auto round = static_cast<std::uint64_t>(state_.step);
-  std::ranges::sort(invisible, {}, [&](std::int64_t i) {
-    return RandomBits(seed_ ^ round, kSplitStream, static_cast<std::uint64_t>(i));
-  });
-  const auto most =
-      static_cast<std::size_t>(options_.split_share * static_cast<double>(state_.cloud.count));
-  if (invisible.size() > most) invisible.resize(most);
-  if (sum > 0) {
-    for (const std::int64_t to : invisible) {
-      const double drawn = sum * static_cast<double>(RandomFloat(seed_ ^ round, kSplitStream + 1,
-                                                                 static_cast<std::uint64_t>(to)));
-      const auto from = std::ranges::upper_bound(total, drawn) - total.begin();
-      if (from < state_.cloud.count) SplitInto(from, to);
-    }
-  }
-  state_.need.zero_();
-}
-
-// Both are smaller than the one before, and apart by a random vector of its distribution.
-void GaussianFit::SplitInto(std::int64_t from, std::int64_t to) {
-  const auto quaternion = [&](int k) { return state_.cloud.At(from, kernels::kRotationRow + k); };
-  const Eigen::Matrix3f axes =
-      Eigen::Quaternionf(quaternion(0), quaternion(1), quaternion(2), quaternion(3))
-          .normalized()
-          .toRotationMatrix();
-  Eigen::Vector3f along;
-  for (int k = 0; k < 3; ++k) {
-    along[k] = RandomNormal(seed_ ^ static_cast<std::uint64_t>(state_.step), kSplitStream + 2,
-                            static_cast<std::uint64_t>(3 * to + k)) *
-               std::exp(state_.cloud.At(from, kernels::kLogScaleRow + k));
-  }
-  const Eigen::Vector3f offset = kSplitDistance * (axes * along);
-  float* const first = state_.first_moment.data_ptr<float>();
-  float* const second = state_.second_moment.data_ptr<float>();
-  for (int row = 0; row < kernels::GaussianRows(state_.cloud.order); ++row) {
-    float value = state_.cloud.At(from, row);
-    if (row >= kernels::kLogScaleRow && row < kernels::kRotationRow) value += std::log(kSplitScale);
-    state_.cloud.At(from, row) = value;
-    state_.cloud.At(to, row) = value;
-    first[state_.cloud.Offset(from, row)] = first[state_.cloud.Offset(to, row)] = 0;
-    second[state_.cloud.Offset(to, row)] = second[state_.cloud.Offset(from, row)];
-  }
-  for (int k = 0; k < 3; ++k) {
-    state_.cloud.At(from, kernels::kMeanRow + k) -= offset[k];
-    state_.cloud.At(to, kernels::kMeanRow + k) += offset[k];
-  }
+  far.Stride({parameters, size});
 }
 
 }  // namespace nerf

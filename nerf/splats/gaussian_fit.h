@@ -8,7 +8,7 @@
 #include "nerf/config/splat_options.h"
 #include "nerf/kernels/adam.h"
 #include "nerf/scene/view.h"
-#include "nerf/splats/gaussian_cloud.h"
+#include "nerf/splats/gaussian_fit_state.h"
 #include "nerf/splats/picture_loss.h"
 #include "nerf/splats/target_pictures.h"
 
@@ -19,16 +19,6 @@ struct FitProgress {
   double fraction = 0;  // 0 to 1: by iterations or by time
   double steps = 0;     // iterations of the whole fit; of a fit by time, about
 };
-
-// All that a fit needs to go on, bit for bit.
-struct GaussianFitState {
-  GaussianCloud cloud;
-  torch::Tensor first_moment, second_moment;  // of Adam, as the parameters
-  torch::Tensor need;                         // [blocks * 16] gradient on the screen since a split
-  std::int64_t step = 0;
-};
-// The beginning of a fit; the Gaussians are brought into a spatial order.
-GaussianFitState BeginFit(const GaussianCloud& initial);
 
 // A fit begins at a quarter of the resolution, then half of it.
 inline constexpr int kResolutions = 3;
@@ -48,6 +38,9 @@ class GaussianFit {
 
   // One iteration. Returns the loss; NaN if that, a gradient or a parameter is not finite.
   double Step(const FitProgress& progress);
+
+  // Goes on with fewer: KeepMostVisible.
+  void Keep(std::int64_t count) { KeepMostVisible(state_, count); }
 
   const GaussianCloud& Cloud() const { return state_.cloud; }
   const GaussianFitState& State() const { return state_; }
@@ -69,8 +62,6 @@ class GaussianFit {
   std::vector<RowGroup> RowGroups(const FitProgress& progress) const;
   void UpdateBlock(std::int64_t block, std::span<float> gradients, std::span<const float> on_screen,
                    std::span<const RowGroup> groups);
-  void Split();
-  void SplitInto(std::int64_t from, std::int64_t to);
 
   SplatOptions options_;
   bool has_alpha_;

@@ -14,7 +14,9 @@ namespace {
 
 constexpr std::uint64_t kSubsetStream = 0x67617573735f5f31ull;
 constexpr std::size_t kNeighbours = 3;
-constexpr double kSmallest = 1e-4, kLargest = 1;  // normalized units
+constexpr double kSmallest = 1e-4;  // normalized units
+// Of the distance from the origin, but at least of 1 unit.
+constexpr double kLargest = 1;
 // Small and opaque: the points are on surfaces. Large and transparent ones (size 1, opacity 0.1)
 // cost several times as many contributions to a pixel, and end lower: on validation photographs,
 // after 40 s of the fox by 0.5 dB, of the chair by 0.5, of two_groups by 1.8.
@@ -79,10 +81,12 @@ GaussianCloud GaussiansAtPoints(const std::vector<ColoredPoint>& points, std::in
   const std::vector<double> spacing = Spacing(used);
   GaussianCloud cloud(count, order);
   for (std::int64_t i = 0; i < static_cast<std::int64_t>(used.size()); ++i) {
+    const double largest = kLargest * std::max(1.0, used[i].x_in_normalized.norm());
+    const auto log_scale =
+        static_cast<float>(std::log(std::clamp(kSize * spacing[i], kSmallest, largest)));
     for (int k = 0; k < 3; ++k) {
       cloud.At(i, kernels::kMeanRow + k) = static_cast<float>(used[i].x_in_normalized[k]);
-      cloud.At(i, kernels::kLogScaleRow + k) =
-          static_cast<float>(std::log(std::clamp(kSize * spacing[i], kSmallest, kLargest)));
+      cloud.At(i, kernels::kLogScaleRow + k) = log_scale;
       const float color = std::max(used[i].rgb[k], kDarkest);
       cloud.At(i, kernels::kColorRow + k) = (color - 0.5f) / kConstantHarmonic;
     }

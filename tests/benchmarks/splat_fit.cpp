@@ -1,6 +1,9 @@
 // Fits Gaussians to a capture for some seconds, and prints the PSNR on validation and held-out
 // photographs:
-//   splat_fit INPUT DOWNSCALE SECONDS|ITERATIONSi [splat option=value ...]
+//   splat_fit INPUT DOWNSCALE SECONDS|ITERATIONSi points|hull|random|RUN [splat option=value ...]
+// The fourth argument says where Gaussians begin: at the input's sparse points, at the visual hull
+// of what is opaque, at random points, or at the surfaces of the field of a trained run of the same
+// photographs. The time that this takes is part of SECONDS, that of training the field is not.
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -9,11 +12,14 @@
 #include "nerf/base/peak_memory.h"
 #include "nerf/base/quantile.h"
 #include "nerf/base/stopwatch.h"
+#include "nerf/model/run_folder.h"
 #include "nerf/pipeline/prepared_scene.h"
+#include "nerf/pipeline/surface_points.h"
 #include "nerf/splats/gaussian_camera.h"
 #include "nerf/splats/gaussian_fit.h"
 #include "nerf/splats/initial_gaussians.h"
 #include "nerf/splats/target_pictures.h"
+#include "nerf/splats/visual_hull.h"
 
 namespace nerf {
 namespace {
@@ -64,6 +70,32 @@ void SetOption(SplatOptions& options, const std::string& assignment) {
   if (!found) throw std::runtime_error(name);
 }
 
+std::vector<ColoredPoint> SparsePoints(const PreparedScene& scene) {
+  std::vector<ColoredPoint> points;
+  for (const SparsePoint& point : scene.posed.points) {
+    points.push_back({scene.normalized_from_world.NormalizedFromWorld(point.x_in_world),
+                      Eigen::Vector3f(point.rgb[0], point.rgb[1], point.rgb[2]) / 255});
+  }
+  return points;
+}
+
+std::vector<ColoredPoint> RandomPoints(int count) {
+  std::vector<ColoredPoint> points;
+  for (int i = 0; i < count; ++i) {
+    points.push_back({Eigen::Vector3d::Random() * 0.7, {0.5f, 0.5f, 0.5f}});
+  }
+  return points;
+}
+
+std::vector<ColoredPoint> PointsOf(const std::string& begin, const PreparedScene& scene,
+                                   const std::vector<TargetView>& views, int count) {
+  if (begin == "points") return SparsePoints(scene);
+  if (begin == "random") return RandomPoints(count / 2);
+  if (begin == "hull") return VisualHull(views, count);
+  const OpenedRun run = OpenRun(begin);
+  return FindSurfacePoints(*run.model, views, count, false, [](std::size_t) {})->points;
+}
+
 void Run(int argc, char** argv) {
   DataOptions data;
   data.downscale = std::stoi(argv[2]);
@@ -71,7 +103,7 @@ void Run(int argc, char** argv) {
   const double length = std::stod(argv[3]);
   const bool by_steps = std::string(argv[3]).back() == 'i';
   SplatOptions options;
-  for (int i = 4; i < argc; ++i) SetOption(options, argv[i]);
+  for (int i = 5; i < argc; ++i) SetOption(options, argv[i]);
   const PipelineListener listener = [](const auto&) {};
   PreparedScene scene = PrepareScene(argv[1], "out/splat_fit", data, listener);
   const Dataset train = LoadDataset(scene.posed, data, {}, scene.normalized_from_world);
@@ -84,25 +116,17 @@ void Run(int argc, char** argv) {
   }
   const Dataset test = LoadDataset(held_out, data, {}, scene.normalized_from_world);
   const Stopwatch watch;
-  std::vector<ColoredPoint> points;
-  for (const SparsePoint& point : scene.posed.points) {
-    points.push_back({scene.normalized_from_world.NormalizedFromWorld(point.x_in_world),
-                      Eigen::Vector3f(point.rgb[0], point.rgb[1], point.rgb[2]) / 255});
-  }
-  if (points.empty()) {
-    for (int i = 0; i < options.count / 2; ++i)
-      points.push_back({Eigen::Vector3d::Random() * 0.7, {0.5f, 0.5f, 0.5f}});
-  }
-  GaussianFit fit(TargetViewsOf(train.train), train.has_alpha,
+  const std::vector<TargetView> views = TargetViewsOf(train.train);
+  const std::vector<ColoredPoint> points = PointsOf(argv[4], scene, views, options.count);
+  GaussianFit fit(views, train.has_alpha,
                   BeginFit(GaussiansAtPoints(points, options.count, options.harmonics_order, 1)),
                   options, kNear, 1);
   fmt::print("{} points, set up in {:.2f} s, {} train views\n", points.size(), watch.Seconds(),
              train.train.size());
   double next = length / 4;
-  const Stopwatch training;
   double pause = 0;
   while (true) {
-    const double spent = training.Seconds() - pause;
+    const double spent = watch.Seconds() - pause;
     const double reached = by_steps ? static_cast<double>(fit.Steps()) : spent;
     if (reached >= next) {
       const Stopwatch evaluating;

@@ -165,6 +165,17 @@ TEST_F(SplatCommand, AFileOfTheSizeThatWasAskedForIsWritten) {
   EXPECT_THAT(tiny.output, HasSubstr("--megabytes 0.001: would be 4 Gaussians"));
 }
 
+TEST_F(SplatCommand, AFrameTimeLimitsTheNumberOfGaussians) {
+  const std::string fit = "splat " + Path("run") + " --set splats.steps=64 --set splats.count=2000";
+  const auto slow = RunNerf(fit + " --seconds-per-frame 100");
+  EXPECT_THAT(slow.output, HasSubstr("fitted 2000 Gaussians"));
+  EXPECT_THAT(slow.output, HasSubstr("a frame takes"));
+  const auto fast = RunNerf(fit + " --seconds-per-frame 1e-9");
+  EXPECT_THAT(fast.output, HasSubstr("fitted 16 Gaussians"));
+  EXPECT_EQ(RunNerf("splat " + Path("run") + " --seconds-per-frame 0").exit_status, 2);
+  EXPECT_EQ(RunNerf("splat " + Path("run") + " --megabytes 0").exit_status, 2);
+}
+
 TEST_F(SplatCommand, WhatCannotBeDoneIsNamed) {
   fs::remove(Path("run/splats.nerf"));
   const auto without = RunNerf("render " + Path("run") + " --with splats -o " + Path("none"));

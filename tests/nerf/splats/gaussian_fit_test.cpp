@@ -115,6 +115,28 @@ TEST(GaussianFit, GoesOnFromItsStateInTheSameBits) {
   EXPECT_EQ(std::memcmp(values.data(), whole.data(), whole.size() * sizeof(float)), 0);
 }
 
+// A sky: of a scene of which all is a thousand times as far away, means move as far in the picture.
+TEST(GaussianFit, MeansMoveInProportionToTheirDistance) {
+  const auto moved = [](double distance) {
+    GaussianCloud scene(1, 0);
+    const std::vector<View> views = Photographs(scene);
+    const Eigen::Vector3d place = distance * Eigen::Vector3d(0.3, 0, 0.95);  // at the border
+    GaussianCloud begin = GaussiansAtPoints({{place, Eigen::Vector3f(0.5f, 0.5f, 0.5f)}}, 16, 0, 1);
+    for (int k = 0; k < 3; ++k) {
+      begin.At(0, kernels::kLogScaleRow + k) = static_cast<float>(std::log(0.1 * distance));
+    }
+    SplatOptions options = Options();
+    options.quarter_resolution = options.half_resolution = 0;
+    GaussianFit fit(TargetViewsOf({views[2]}), false, BeginFit(begin), options, kNear, 1);
+    fit.Step({0, 100});
+    const Eigen::Vector3d mean(fit.Cloud().At(0, 0), fit.Cloud().At(0, 1), fit.Cloud().At(0, 2));
+    return (mean - place).norm() / distance;
+  };
+  const double near = moved(2);
+  EXPECT_GT(near, 1e-3);
+  EXPECT_NEAR(moved(1000), near, 0.05 * near);
+}
+
 TEST(GaussianFit, InvisibleGaussiansAreUsed) {
   const std::vector<View> views = Photographs(Scene());
   GaussianFit fit(TargetViewsOf(views), false, BeginFit(Start(200, 0)), Options(), kNear, 1);

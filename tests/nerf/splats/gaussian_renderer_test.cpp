@@ -147,18 +147,18 @@ class GaussiansOfEveryLens : public testing::TestWithParam<int> {
  protected:
   GaussianView view_{CameraOf(static_cast<CameraModel>(GetParam())), SomePose(), 0.02};
   std::vector<Gaussian> gaussians_ = RandomGaussians(20, 3, 7);
+  const std::vector<float> blocks_ = InBlocks(gaussians_, 3);
+  const kernels::GaussianCamera camera_ =
+      MakeGaussianCamera(view_.camera, view_.camera_from_normalized.inverse(), view_.near);
 };
 
 TEST_P(GaussiansOfEveryLens, AreDrawnAsTheReference) {
-  const std::vector<float> blocks = InBlocks(gaussians_, 3);
   const std::vector<GaussianPixel> truth = DrawGaussians(gaussians_, view_);
-  const kernels::GaussianCamera camera =
-      MakeGaussianCamera(view_.camera, view_.camera_from_normalized.inverse(), view_.near);
   for (const kernels::SimdLevel& level : kernels::SimdLevels()) {
     SCOPED_TRACE(level.name);
     const kernels::WithSimdLevel use(level);
     GaussianRenderer renderer;
-    const GaussianPicture& picture = renderer.Draw(camera, {3, blocks});
+    const GaussianPicture& picture = renderer.Draw(camera_, {3, blocks_});
     double largest = 0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
@@ -176,16 +176,13 @@ TEST_P(GaussiansOfEveryLens, AreDrawnAsTheReference) {
 }
 
 TEST_P(GaussiansOfEveryLens, HaveTheSurfacesOfTheReference) {
-  const std::vector<float> blocks = InBlocks(gaussians_, 3);
   const std::vector<GaussianPixel> truth = DrawGaussians(gaussians_, view_);
-  const kernels::GaussianCamera camera =
-      MakeGaussianCamera(view_.camera, view_.camera_from_normalized.inverse(), view_.near);
   for (const kernels::SimdLevel& level : kernels::SimdLevels()) {
     SCOPED_TRACE(level.name);
     const kernels::WithSimdLevel use(level);
     GaussianRenderer renderer;
-    renderer.Draw(camera, {3, blocks});
-    const GaussianSurface surface = renderer.FindSurface(camera, {3, blocks});
+    renderer.Draw(camera_, {3, blocks_});
+    const GaussianSurface surface = renderer.FindSurface(camera_, {3, blocks_});
     int compared = 0, with_median = 0, other_median = 0;
     for (std::size_t p = 0; p < truth.size(); ++p) {
       if (truth[p].median_distance > 0) ++with_median;
@@ -204,7 +201,6 @@ TEST_P(GaussiansOfEveryLens, HaveTheSurfacesOfTheReference) {
 }
 
 TEST_P(GaussiansOfEveryLens, HaveTheGradientsOfTheReference) {
-  const std::vector<float> blocks = InBlocks(gaussians_, 3);
   const int rows = kernels::GaussianRows(3);
   // By central differences, once for all levels.
   std::vector<double> truth;
@@ -236,7 +232,7 @@ TEST_P(GaussiansOfEveryLens, HaveTheGradientsOfTheReference) {
     SCOPED_TRACE(level.name);
     const kernels::WithSimdLevel use(level);
     GaussianRenderer renderer;
-    const Gradients found = GradientsOf(renderer, view_, {3, blocks});
+    const Gradients found = GradientsOf(renderer, view_, {3, blocks_});
     for (std::size_t i = 0; i < gaussians_.size(); ++i) {
       for (int row = 0; row < rows; ++row) {
         const double value = found.parameters[(i / 16 * rows + row) * 16 + i % 16];
