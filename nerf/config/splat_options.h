@@ -6,7 +6,7 @@ namespace nerf {
 
 // How Gaussians are fitted to photographs (nerf/splats/gaussian_fit.h).
 struct SplatOptions {
-  int count = 50000;
+  int count = 0;
   int steps = 4000;
   double share = 0.8;
   int harmonics_order = 3;
@@ -29,7 +29,8 @@ struct SplatOptions {
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
-    option("count", o.count, "", Between(16, 1 << 24), "Gaussians");
+    option("count", o.count, "", Between(0, 1 << 24),
+           "Gaussians; 0: by the size of photographs, 50000 up to 400x400 pixels");
     option("steps", o.steps, "iterations", Between(1, 1 << 24), "without a time budget");
     option("share", o.share, "of a time budget", Between(0.1, 0.9),
            "in which nerf train fits Gaussians, after the field");

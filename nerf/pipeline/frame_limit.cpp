@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kFrames = 8;
 // At once at most so many are left out; the others have to take their place.
 constexpr double kLeastShare = 0.7;
-constexpr std::int64_t kFewest = 16;
+constexpr std::int64_t kFewestKept = 16;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void KeepToFrameTime(GaussianFit& fit, const std::vector<TargetView>& views, dou
   if (taken <= seconds) return;
   const double share = std::max(kLeastShare, seconds / taken);
   const auto count = static_cast<std::int64_t>(share * static_cast<double>(fit.Cloud().count));
-  fit.Keep(std::max(kFewest, count));
+  fit.Keep(std::max(kFewestKept, count));
 }
 
 }  // namespace nerf

@@ -3,12 +3,16 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "nerf/base/available_memory.h"
 #include "nerf/base/input_error.h"
 #include "nerf/effects/effects.h"
 #include "nerf/model/refined_poses.h"
 #include "nerf/pipeline/surface_points.h"
+#include "nerf/scene/camera.h"
+#include "nerf/splats/visual_hull.h"
 
 namespace nerf {
 namespace {
@@ -20,6 +24,9 @@ constexpr double kNearShare = 0.5;
 // A field takes seconds to render the depth for so many; more would cost more time than they are
 // worth: splitting makes the other Gaussians.
 constexpr int kMostPoints = 80000;
+
+// Gaussians where their number is not given: it grows with the side of the photographs.
+constexpr double kFewestChosen = 50000, kMostChosen = 200000, kPixelsOfFewest = 400 * 400;
 
 // Of a Gaussian beside its parameters and their two moments: projections, and what it has in about
 // ten tiles.
@@ -36,7 +43,31 @@ std::vector<TargetView> RefinedViews(const Model& field, const std::vector<View>
   return targets;
 }
 
+SurfacePoints HullOf(const std::vector<TargetView>& views, std::int64_t wanted) {
+  SurfacePoints hull{VisualHull(views, wanted), std::numeric_limits<double>::infinity()};
+  for (const TargetView& view : views) {
+    for (const ColoredPoint& point : hull.points) {
+      const double distance =
+          (point.x_in_normalized - view.normalized_from_camera.translation()).norm();
+      hull.nearest = std::min(hull.nearest, distance);
+    }
+  }
+  return hull;
+}
+
 }  // namespace
+
+SplatOptions SplatOptionsFor(const SplatOptions& options, const Dataset& data) {
+  if (options.count > 0) return options;
+  double pixels = 0;
+  for (const View& view : data.train) pixels += static_cast<double>(PixelCount(view.camera));
+  pixels /= static_cast<double>(std::max<std::size_t>(1, data.train.size()));
+  const double growth = std::sqrt(pixels / kPixelsOfFewest);
+  SplatOptions result = options;
+  result.count = static_cast<int>(
+      std::clamp<double>(std::lround(kFewestChosen * growth), kFewestChosen, kMostChosen));
+  return result;
+}
 
 GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
   if (field.scene.encoding == ColorEncoding::kLinear) {
@@ -46,6 +77,7 @@ GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
   }
   GaussianScene scene;
   scene.config = field.config;
+  scene.config.splats = SplatOptionsFor(scene.config.splats, data);
   if (!scene.config.effects.view_dependence) scene.config.splats.harmonics_order = 0;
   scene.facts = field.scene;
   scene.train = RefinedViews(field, data.train, field.exposure != nullptr);
@@ -74,16 +106,18 @@ void WarnOfFieldsEffects(const Config& config, const PipelineListener& listener)
   if (config.effects.robust) warn(kRobustEffect);
 }
 
-std::optional<GaussianStart> StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
+std::optional<GaussianStart> StartAtSurfaces(const SceneModel& field, const GaussianScene& scene,
                                              const std::atomic<bool>& stop,
                                              const std::function<void(std::size_t)>& progress) {
   const SplatOptions& options = scene.config.splats;
   if (const std::string why_not = TooLittleMemory(options); !why_not.empty()) {
     throw InputError("{}", why_not);
   }
-  const std::optional<SurfacePoints> surfaces =
-      FindSurfacePoints(field, scene.train, std::min(options.count, kMostPoints), stop, progress);
+  const int wanted = std::min(options.count, kMostPoints);
+  std::optional<SurfacePoints> surfaces =
+      FindSurfacePoints(field, scene.train, wanted, stop, progress);
   if (!surfaces) return std::nullopt;
+  if (surfaces->points.empty() && scene.facts.has_alpha) surfaces = HullOf(scene.train, wanted);
   if (surfaces->points.empty()) {
     throw InputError("the views of the field agree on no surface; train it longer");
   }

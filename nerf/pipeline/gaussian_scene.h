@@ -23,6 +23,9 @@ struct GaussianScene {
   std::vector<TargetView> train, validation;
 };
 
+// The options of a fit to photographs: with a number of Gaussians where none is given.
+SplatOptions SplatOptionsFor(const SplatOptions& options, const Dataset& data);
+
 // Throws InputError for linear photographs, to which Gaussians are not fitted yet.
 //   data  must outlive the result
 GaussianScene GaussianSceneOf(const Model& field, const Dataset& data);
@@ -40,11 +43,12 @@ struct GaussianStart {
   FitFacts made = {};  // so far, where it was interrupted
 };
 
-// Begins at the surfaces that a field renders (FindSurfacePoints).
+// Begins at the surfaces that a field renders (FindSurfacePoints), or where its views agree on none
+// at the visual hull of photographs with alpha.
 //   progress  called with the number of views done, of scene.train
 //   returns   nullopt where it was stopped
 // Throws InputError where its views agree on no surface, or where there is too little memory.
-std::optional<GaussianStart> StartAtSurfaces(const ModelSnapshot& field, const GaussianScene& scene,
+std::optional<GaussianStart> StartAtSurfaces(const SceneModel& field, const GaussianScene& scene,
                                              const std::atomic<bool>& stop,
                                              const std::function<void(std::size_t)>& progress);
 

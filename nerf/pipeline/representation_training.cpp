@@ -246,7 +246,7 @@ std::string WhyNoGaussians(const Config& config, const Dataset& data) {
   if (config.train.representation == Representation::kAuto && data.validation.empty()) {
     return "without validation photographs nothing can be compared";
   }
-  return TooLittleMemory(config.splats);
+  return TooLittleMemory(SplatOptionsFor(config.splats, data));
 }
 
 RepresentationsTrained TrainRepresentations(Trainer& trainer, const Dataset& data,

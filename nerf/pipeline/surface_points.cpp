@@ -153,6 +153,10 @@ std::optional<SurfacePoints> FindSurfacePoints(const SceneModel& model,
   });
   std::vector<ColoredPoint> points;
   for (const auto& own : of_view) points.insert(points.end(), own.begin(), own.end());
+  const auto is_near = [](const ColoredPoint& point) {
+    return point.x_in_normalized.norm() < kSkyDistance / 2;
+  };
+  if (std::ranges::none_of(points, is_near)) points.clear();
   return SurfacePoints{OneInEachVoxel(points, VoxelSizeFor(points, wanted)), NearestOf(rendered)};
 }
 

@@ -20,7 +20,7 @@ struct SurfacePoints {
 // Points of the surfaces of a model: the depth that it renders at the poses of photographs, where
 // at least two other views see the same surface; then one point in each voxel of contracted space,
 // of a size that leaves about as many as wanted. Where photographs without alpha see no surface,
-// there are points far away instead: a sky.
+// there are points far away instead: a sky. Empty where the views agree on no surface.
 //   views     poses and cameras; rendered at a resolution that gives several pixels for each point
 //   progress  called with the number of views done
 //   returns   nullopt where it was stopped

@@ -11,6 +11,9 @@ namespace nerf {
 namespace {
 
 constexpr std::int64_t kRowsTogether = 16;
+// A pixel from which the camera says only that it is at least so bright. Where the exposure of the
+// photograph is above the mean, other photographs know more.
+constexpr float kClipped = 0.998f, kWeightOfClipped = 0.1f;
 
 // Where all pixels are stored, row after row.
 void FillRows(const View& photograph, const std::array<float, 4>& scale, TargetPicture& target) {
@@ -39,6 +42,22 @@ void FillStored(const View& photograph, const std::array<float, 4>& scale, Targe
   }
 }
 
+void WeighClipped(const std::array<float, 3>& gains, TargetPicture& target) {
+  if (std::ranges::none_of(gains, [](float gain) { return gain > 1; })) return;
+  ParallelFor(target.height, kRowsTogether, [&](std::int64_t first, std::int64_t last) {
+    for (auto y = static_cast<int>(first); y < last; ++y) {
+      float* const weight = target.Row(TargetPicture::kWeight, y);
+      for (int c = 0; c < 3; ++c) {
+        if (gains[c] <= 1) continue;
+        const float* const values = target.Row(c, y);
+        for (int x = 0; x < target.width; ++x) {
+          if (values[x] * gains[c] > kClipped) weight[x] = std::min(weight[x], kWeightOfClipped);
+        }
+      }
+    }
+  });
+}
+
 }  // namespace
 
 std::vector<TargetView> TargetViewsOf(const std::vector<View>& views) {
@@ -64,6 +83,7 @@ void MakeTarget(const TargetView& view, TargetPicture& target) {
   } else {
     FillStored(photograph, scale, target);
   }
+  WeighClipped(view.gains, target);
   for (int i = 0; i < view.halvings; ++i) target = Halved(target);
 }
 

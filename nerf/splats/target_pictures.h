@@ -24,7 +24,8 @@ std::vector<TargetView> TargetViewsOf(const std::vector<View>& views);
 // The view at a resolution that is halved so many times more.
 TargetView Reduced(TargetView view, int halvings);
 
-// The photograph at the mean exposure; pixels that it does not store have a weight of 0.
+// The photograph at the mean exposure. Pixels that it does not store have a weight of 0, clipped
+// ones of a photograph that is brighter than the mean one of 0.1.
 TargetPicture TargetOf(const TargetView& view);
 // The same into a picture whose memory is used again. Uses all threads.
 void MakeTarget(const TargetView& view, TargetPicture& target);

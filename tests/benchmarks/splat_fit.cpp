@@ -1,6 +1,7 @@
 // Fits Gaussians to a capture for some seconds, and prints the PSNR on validation and held-out
 // photographs:
-//   splat_fit INPUT DOWNSCALE SECONDS|ITERATIONSi points|hull|random|RUN [splat option=value ...]
+//   splat_fit INPUT DOWNSCALE SECONDS|ITERATIONSi points|hull|random|RUN[+...] [splat option=value
+//   ...]
 // The fourth argument says where Gaussians begin: at the input's sparse points, at the visual hull
 // of what is opaque, at random points, or at the surfaces of the field of a trained run of the same
 // photographs. The time that this takes is part of SECONDS, that of training the field is not.
@@ -89,6 +90,12 @@ std::vector<ColoredPoint> RandomPoints(int count) {
 
 std::vector<ColoredPoint> PointsOf(const std::string& begin, const PreparedScene& scene,
                                    const std::vector<TargetView>& views, int count) {
+  if (const auto plus = begin.find('+'); plus != std::string::npos) {
+    std::vector<ColoredPoint> points = PointsOf(begin.substr(0, plus), scene, views, count);
+    const std::vector<ColoredPoint> others = PointsOf(begin.substr(plus + 1), scene, views, count);
+    points.insert(points.end(), others.begin(), others.end());
+    return points;
+  }
   if (begin == "points") return SparsePoints(scene);
   if (begin == "random") return RandomPoints(count / 2);
   if (begin == "hull") return VisualHull(views, count);

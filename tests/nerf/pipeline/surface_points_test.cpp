@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "nerf/base/input_error.h"
+#include "nerf/pipeline/gaussian_scene.h"
 #include "nerf/scene/camera.h"
 #include "tests/support/analytic_capture.h"
 
@@ -15,7 +17,9 @@ constexpr double kRadius = 0.6;
 // A red ball at the origin, before a blue sky.
 class BallModel : public SceneModel {
  public:
-  explicit BallModel(bool has_alpha) { scene_.has_alpha = has_alpha; }
+  explicit BallModel(bool has_alpha, double radius = kRadius) : radius_(radius) {
+    scene_.has_alpha = has_alpha;
+  }
 
   RenderedView Render(const ViewRequest& view) const override {
     const int width = view.camera.width, height = view.camera.height;
@@ -28,7 +32,7 @@ class BallModel : public SceneModel {
             view.world_from_camera.linear() * *DirectionFromPixel(view.camera, {x + 0.5, y + 0.5});
         const Eigen::Vector3d origin = view.world_from_camera.translation();
         const double along = origin.dot(direction);
-        const double root = along * along - origin.squaredNorm() + kRadius * kRadius;
+        const double root = along * along - origin.squaredNorm() + radius_ * radius_;
         const bool meets = root > 0;
         rendered.rgb.At(x, y)[meets ? 0 : 2] = 0.7f;
         *rendered.opacity.At(x, y) = meets;
@@ -42,21 +46,28 @@ class BallModel : public SceneModel {
   std::int64_t Step() const override { return 0; }
 
  private:
+  double radius_;
   Config config_;
   SceneFacts scene_;
 };
 
-SurfacePoints PointsOf(bool has_alpha, std::int64_t wanted) {
-  const auto grey = [](const Eigen::Vector3f&, const Eigen::Vector3f&) -> Eigen::Vector4f {
-    return Eigen::Vector4f::Constant(0.5f);
+// Photographs of the ball, which is all that they have.
+test::AnalyticCapture CaptureOfBall() {
+  const auto ball = [](const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
+    const bool meets = origin.cross(direction).norm() < static_cast<float>(kRadius);
+    return meets ? Eigen::Vector4f(0.7f, 0, 0, 1) : Eigen::Vector4f::Zero().eval();
   };
-  const test::AnalyticCapture capture(test::CameraRing(24, 2, 0.5), 120, 120, grey);
-  return *FindSurfacePoints(BallModel(has_alpha), TargetViewsOf(capture.data.train), wanted, false,
+  return {test::CameraRing(24, 2, 0.5), 120, 120, ball, true};
+}
+
+SurfacePoints PointsOf(const BallModel& model, std::int64_t wanted = 4000) {
+  const test::AnalyticCapture capture = CaptureOfBall();
+  return *FindSurfacePoints(model, TargetViewsOf(capture.data.train), wanted, false,
                             [](std::size_t) {});
 }
 
 TEST(SurfacePoints, AreOnTheSurface) {
-  const SurfacePoints found = PointsOf(true, 4000);
+  const SurfacePoints found = PointsOf(BallModel(true));
   EXPECT_GT(found.points.size(), 2000u);
   EXPECT_LE(found.points.size(), 4000u);
   for (const ColoredPoint& point : found.points) {
@@ -67,7 +78,7 @@ TEST(SurfacePoints, AreOnTheSurface) {
 }
 
 TEST(SurfacePoints, WithoutASurfaceAreASky) {
-  const SurfacePoints found = PointsOf(false, 4000);
+  const SurfacePoints found = PointsOf(BallModel(false));
   std::size_t far = 0;
   for (const ColoredPoint& point : found.points) {
     if (point.x_in_normalized.norm() < 1) continue;
@@ -78,6 +89,33 @@ TEST(SurfacePoints, WithoutASurfaceAreASky) {
   EXPECT_GT(far, 500u);
   EXPECT_GT(found.points.size() - far, 500u);
   EXPECT_LE(found.points.size(), 4000u);
+}
+
+TEST(SurfacePoints, OfASkyAloneAreNone) {
+  EXPECT_TRUE(PointsOf(BallModel(false, 0)).points.empty());
+}
+
+// The field shows nothing yet, but photographs have alpha.
+TEST(StartAtSurfaces, BeginsAtTheVisualHullWithoutSurfaces) {
+  const test::AnalyticCapture capture = CaptureOfBall();
+  GaussianScene scene;
+  scene.config.splats.count = 2000;
+  scene.facts.has_alpha = true;
+  scene.train = TargetViewsOf(capture.data.train);
+  const auto start = StartAtSurfaces(BallModel(true, 0), scene, false, [](std::size_t) {});
+  int visible = 0;
+  for (std::int64_t i = 0; i < start->state.cloud.count; ++i) {
+    if (start->state.cloud.At(i, kernels::kOpacityRow) < 0) continue;
+    ++visible;
+    Eigen::Vector3d mean;
+    for (int k = 0; k < 3; ++k) mean[k] = start->state.cloud.At(i, kernels::kMeanRow + k);
+    EXPECT_GT(mean.norm(), kRadius - 0.1);
+  }
+  EXPECT_GT(visible, 1000);
+  EXPECT_GT(start->near, 0.2);
+  EXPECT_LT(start->near, 2);
+  scene.facts.has_alpha = false;
+  EXPECT_THROW(StartAtSurfaces(BallModel(false, 0), scene, false, [](std::size_t) {}), InputError);
 }
 
 }  // namespace
