@@ -8,7 +8,6 @@
 #include "nerf/base/parallel.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/scene/dataset.h"
-#include "nerf/scene/lens_coverage.h"
 #include "nerf/splats/gaussian_camera.h"
 #include "nerf/splats/gaussian_renderer.h"
 
@@ -81,9 +80,8 @@ RenderedView ViewOf(const GaussianPicture& picture, const SceneFacts& scene) {
 }
 
 // Where the lens covers nothing there is the background, as in pictures of the field.
-void EmptyOutsideLens(const Camera& camera, const SceneFacts& scene, RenderedView& view) {
-  const std::vector<std::uint32_t> covered = PixelsInLens(camera);
-  if (covered.empty()) return;
+void EmptyOutsideLens(const std::vector<std::uint32_t>& covered, const SceneFacts& scene,
+                      RenderedView& view) {
   const Eigen::Vector3f background = DisplayBackground(scene.has_alpha);
   auto next = covered.begin();
   for (std::size_t pixel = 0; pixel < view.opacity.pixels.size(); ++pixel) {
@@ -130,7 +128,9 @@ RenderedView GaussianModel::Render(const ViewRequest& view) const {
   std::unique_ptr<GaussianRenderer> renderer = renderers_->Take();
   RenderedView rendered = ViewOf(renderer->Draw(camera, cloud_.Parameters()), scene_);
   if (view.surface) AddSurface(renderer->FindSurface(camera, cloud_.Parameters()), rendered);
-  EmptyOutsideLens(view.camera, scene_, rendered);
+  if (const auto covered = lens_->Of(view.camera); *covered) {
+    EmptyOutsideLens(**covered, scene_, rendered);
+  }
   rendered.samples = renderer->Visible();
   renderers_->Give(std::move(renderer));
   if (view.progress) {

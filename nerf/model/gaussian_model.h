@@ -6,6 +6,7 @@
 
 #include "nerf/model/checkpoint.h"
 #include "nerf/model/scene_model.h"
+#include "nerf/scene/lens_coverage.h"
 #include "nerf/splats/gaussian_cloud.h"
 #include "nerf/splats/gaussian_fit.h"
 #include "nerf/splats/renderer_pool.h"
@@ -42,6 +43,7 @@ class GaussianModel : public SceneModel {
   double near_;
   FitFacts made_;
   std::shared_ptr<RendererPool> renderers_ = std::make_shared<RendererPool>();
+  std::shared_ptr<LensCoverage> lens_ = std::make_shared<LensCoverage>();
 };
 
 // A fit that has not ended.

@@ -8,6 +8,7 @@
 
 #include "nerf/base/available_memory.h"
 #include "nerf/base/input_error.h"
+#include "nerf/base/quantile.h"
 #include "nerf/effects/effects.h"
 #include "nerf/model/refined_poses.h"
 #include "nerf/pipeline/surface_points.h"
@@ -20,6 +21,7 @@ namespace {
 // Gaussians that are nearer to a camera than this share of what it sees are not drawn: they would
 // hang in front of it, to explain one photograph.
 constexpr double kNearShare = 0.5;
+constexpr double kNearQuantile = 0.02;  // of the distances from a camera, at a visual hull
 
 // A field takes seconds to render the depth for so many; more would cost more time than they are
 // worth: splitting makes the other Gaussians.
@@ -27,10 +29,16 @@ constexpr int kMostPoints = 80000;
 
 // Gaussians where their number is not given: it grows with the side of the photographs.
 constexpr double kFewestChosen = 50000, kMostChosen = 200000, kPixelsOfFewest = 400 * 400;
+constexpr double kFewestOfAll = 1000;  // where memory is short; fewer are no scene
 
 // Of a Gaussian beside its parameters and their two moments: projections, and what it has in about
 // ten tiles.
 constexpr double kBytesBeside = 700;
+
+double MegabytesOfEach(const SplatOptions& options) {
+  const double values = kernels::GaussianRows(options.harmonics_order);
+  return 1e-6 * (3 * sizeof(float) * values + kBytesBeside);
+}
 
 std::vector<TargetView> RefinedViews(const Model& field, const std::vector<View>& views,
                                      bool has_gains) {
@@ -46,11 +54,13 @@ std::vector<TargetView> RefinedViews(const Model& field, const std::vector<View>
 SurfacePoints HullOf(const std::vector<TargetView>& views, std::int64_t wanted) {
   SurfacePoints hull{VisualHull(views, wanted), std::numeric_limits<double>::infinity()};
   for (const TargetView& view : views) {
+    std::vector<double> distances;
     for (const ColoredPoint& point : hull.points) {
-      const double distance =
-          (point.x_in_normalized - view.normalized_from_camera.translation()).norm();
-      hull.nearest = std::min(hull.nearest, distance);
+      distances.push_back(
+          (point.x_in_normalized - view.normalized_from_camera.translation()).norm());
     }
+    if (!distances.empty())
+      hull.nearest = std::min(hull.nearest, Quantile(distances, kNearQuantile));
   }
   return hull;
 }
@@ -64,12 +74,17 @@ SplatOptions SplatOptionsFor(const SplatOptions& options, const Dataset& data) {
   pixels /= static_cast<double>(std::max<std::size_t>(1, data.train.size()));
   const double growth = std::sqrt(pixels / kPixelsOfFewest);
   SplatOptions result = options;
-  result.count = static_cast<int>(
-      std::clamp<double>(std::lround(kFewestChosen * growth), kFewestChosen, kMostChosen));
+  result.count = static_cast<int>(std::clamp(kFewestChosen * growth, kFewestChosen, kMostChosen));
+  const double fitting = AvailableMegabytes() / MegabytesOfEach(options);
+  if (fitting < result.count) result.count = static_cast<int>(std::max(fitting, kFewestOfAll));
   return result;
 }
 
 GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
+  return GaussianSceneOf(field, field.config.splats, data);
+}
+
+GaussianScene GaussianSceneOf(const Model& field, const SplatOptions& splats, const Dataset& data) {
   if (field.scene.encoding == ColorEncoding::kLinear) {
     throw InputError(
         "the photographs are linear, to which Gaussians are not fitted yet; use the field: "
@@ -77,7 +92,7 @@ GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
   }
   GaussianScene scene;
   scene.config = field.config;
-  scene.config.splats = SplatOptionsFor(scene.config.splats, data);
+  scene.config.splats = SplatOptionsFor(splats, data);
   if (!scene.config.effects.view_dependence) scene.config.splats.harmonics_order = 0;
   scene.facts = field.scene;
   scene.train = RefinedViews(field, data.train, field.exposure != nullptr);
@@ -86,8 +101,7 @@ GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
 }
 
 std::string TooLittleMemory(const SplatOptions& options) {
-  const double each = 3.0 * sizeof(float) * kernels::GaussianRows(options.harmonics_order);
-  const double needed = 1e-6 * options.count * (each + kBytesBeside);
+  const double needed = options.count * MegabytesOfEach(options);
   const double available = AvailableMegabytes();
   if (needed <= available) return "";
   return fmt::format(
@@ -118,6 +132,7 @@ std::optional<GaussianStart> StartAtSurfaces(const SceneModel& field, const Gaus
       FindSurfacePoints(field, scene.train, wanted, stop, progress);
   if (!surfaces) return std::nullopt;
   if (surfaces->points.empty() && scene.facts.has_alpha) surfaces = HullOf(scene.train, wanted);
+  if (stop) return std::nullopt;
   if (surfaces->points.empty()) {
     throw InputError("the views of the field agree on no surface; train it longer");
   }

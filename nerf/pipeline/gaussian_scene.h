@@ -23,11 +23,15 @@ struct GaussianScene {
   std::vector<TargetView> train, validation;
 };
 
-// The options of a fit to photographs: with a number of Gaussians where none is given.
+// The options of a fit to photographs: with a number of Gaussians where none is given, at
+// most as many as memory holds.
 SplatOptions SplatOptionsFor(const SplatOptions& options, const Dataset& data);
 
 // Throws InputError for linear photographs, to which Gaussians are not fitted yet.
-//   data  must outlive the result
+//   splats  options of the fit; other options are those of the field
+//   data    must outlive the result
+GaussianScene GaussianSceneOf(const Model& field, const SplatOptions& splats, const Dataset& data);
+// The same with the options of the field.
 GaussianScene GaussianSceneOf(const Model& field, const Dataset& data);
 
 // Why there is too little memory for a fit; empty: there is enough.

@@ -35,7 +35,7 @@ Config ConfigOf(const Config& of_run, const std::vector<std::string>& assignment
 int CountFor(double megabytes, const Config& config) {
   const int order = config.effects.view_dependence ? config.splats.harmonics_order : 0;
   const double count = std::floor(1e6 * megabytes / static_cast<double>(BytesInPly(order)));
-  constexpr double kFewest = 16, kMost = 1 << 24;  // as splats.count
+  constexpr double kFewest = 16, kMost = 1 << 24;
   if (!(count >= kFewest && count <= kMost)) {
     throw InputError("--megabytes {}: would be {:.0f} Gaussians; {:.0f} to {:.0f} are possible",
                      megabytes, count, kFewest, kMost);
@@ -59,25 +59,32 @@ std::optional<GaussianSession> MakeGaussians(const GaussianRequest& request, con
   const fs::path file = GaussiansPath(request.run);
   GaussianPlan plan;
   std::optional<GaussianStart> start;
-  Model model = CloneModel(run.model->GetModel());
+  const Model& field = run.model->GetModel();
+  SplatOptions splats;
   if (request.resume) {
-    model.config = OpenGaussians(request.run)->GetConfig();
+    splats = OpenGaussians(request.run)->GetConfig().splats;
     start = StartAgain(file, plan);
     if (!start) {
       throw InputError("{}: its fit has ended; make Gaussians anew without --resume",
                        file.string());
     }
   } else {
-    model.config = ConfigOf(model.config, request.assignments);
-    plan.steps = model.config.splats.steps;
+    const Config config = ConfigOf(field.config, request.assignments);
+    splats = config.splats;
+    plan.steps = splats.steps;
     plan.seconds_per_frame = request.seconds_per_frame;
-    if (request.megabytes > 0)
-      model.config.splats.count = CountFor(request.megabytes, model.config);
+    const auto gives_count = [](const std::string& assignment) {
+      return assignment.starts_with("splats.count=");
+    };
+    if (request.megabytes > 0 && std::ranges::any_of(request.assignments, gives_count)) {
+      throw InputError("--megabytes and --set splats.count both give the number; omit one");
+    }
+    if (request.megabytes > 0) splats.count = CountFor(request.megabytes, config);
   }
   const Dataset data =
-      LoadPhotographs(sfm::ReadTransformsJson(PosesPath(request.run)), model.config,
-                      model.scene.normalized_from_world, request.run, listener);
-  const GaussianScene scene = GaussianSceneOf(model, data);
+      LoadPhotographs(sfm::ReadTransformsJson(PosesPath(request.run)), field.config,
+                      field.scene.normalized_from_world, request.run, listener);
+  const GaussianScene scene = GaussianSceneOf(field, splats, data);
   const GaussianValidation validation(scene, data);
   if (!start) {
     WarnOfFieldsEffects(scene.config, listener);
@@ -100,7 +107,7 @@ std::optional<GaussianSession> MakeGaussians(const GaussianRequest& request, con
   if (validation.Empty()) {
     record.splats_stand = stood;
   } else {
-    session.reached = ComparedPsnr{validation.Psnr(model), session.fit.psnr};
+    session.reached = ComparedPsnr{validation.Psnr(field), session.fit.psnr};
     record.reached = session.reached;
   }
   WriteRepresentation(record, request.run);

@@ -92,11 +92,11 @@ class FitClock {
 GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
                             const GaussianValidation* validation, const GaussianPlan& plan,
                             const std::atomic<bool>& stop, const PipelineListener& listener) {
-  const SplatOptions& options = scene.config.splats;
-  FitClock clock(plan, options, start.made.seconds);
-  GaussianFit fit(scene.train, scene.facts.has_alpha, std::move(start.state), options, start.near,
-                  scene.config.train.seed);
-  clock.Begin(fit.Steps());
+  FitClock clock(plan, scene.config.splats, start.made.seconds);
+  GaussianFit fit(scene.train, scene.facts.has_alpha, std::move(start.state), scene.config.splats,
+                  start.near, scene.config.train.seed);
+  const std::int64_t first_step = fit.Steps();
+  clock.Begin(first_step);
   GaussianSummary summary;
   const auto model = [&] {
     return GaussianModel(scene.config, scene.facts, fit.Cloud(), start.near,
@@ -126,7 +126,7 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
   while (progress.fraction < 1 && !summary.reached_target && !stop) {
     const int part_before = part(), check_before = check();
     const double loss = fit.Step(progress);
-    if (!std::isfinite(loss)) ThrowNotFinite(fit, options);
+    if (!std::isfinite(loss)) ThrowNotFinite(fit, scene.config.splats);
     progress = clock.At(fit.Steps());
     if (part() > part_before && progress.fraction < 1) validate();
     if (plan.seconds_per_frame > 0 && check() > check_before && check() < kFrameChecks) {
@@ -139,7 +139,7 @@ GaussianResult FitGaussians(const GaussianScene& scene, GaussianStart start,
   if (summary.finished) {
     validate();
     write(nullptr);
-  } else {
+  } else if (fit.Steps() > first_step) {  // else what is there stays
     save_to_resume();
   }
   summary.steps = fit.Steps();

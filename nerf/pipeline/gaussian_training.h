@@ -22,7 +22,8 @@ struct GaussianPlan {
   std::filesystem::path file = {};  // RUN/splats.nerf; empty: nothing is written
   std::int64_t checkpoint_every = 0;  // iterations; 0: only at the end
   double target_psnr = 0;             // dB, on validation photographs; 0: none
-  // As few Gaussians as can be drawn in this time, which depends on the machine; 0: all.
+  // At most as many Gaussians as are drawn in this time, so the result depends on the machine and
+  // what else it does; 0: all.
   double seconds_per_frame = 0;
   std::function<void()> before_writing = [] {};
 };
@@ -33,7 +34,8 @@ struct GaussianResult {
 };
 
 // Fits Gaussians to the end, or until `stop` is set; then they are written with what resuming
-// needs. By steps the result is the same bits, whether it was interrupted or not. By time it ends
+// needs. By steps, without a time for a frame, the result is the same bits, whether it was
+// interrupted or not. By time it ends
 // in time, with its last validation.
 //   validation  null, or empty: there is none
 // Throws NonFiniteError naming the iteration; the last file stays.

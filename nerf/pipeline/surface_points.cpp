@@ -22,9 +22,10 @@ constexpr int kViewsThatAgree = 2;                          // beside that of th
 constexpr double kSmallestVoxel = 1e-4, kLargestVoxel = 1;  // normalized units
 constexpr int kBisections = 16;
 constexpr double kNearest = 0.02;  // quantile of the distances in a view
-// Of points where a view sees no surface: a sky. From the cameras, which are within 1 unit, they
-// are in the same direction up to a pixel.
-constexpr double kSkyDistance = 500;
+// A sky, where views see no surface, is so many times as far away as the farthest camera that a
+// pixel of it is the same for all cameras.
+constexpr double kSkyPixels = 2;   // times the distance of a camera, in both directions
+constexpr double kLeastSky = 500;  // normalized units
 
 struct DepthView {
   Camera camera;
@@ -53,19 +54,19 @@ struct DepthView {
   }
 };
 
-//   has_sky  whether rays that meet no surface see something
+//   sky  distance of points where rays meet no surface; 0: there are none
 std::vector<ColoredPoint> PointsOf(const std::vector<DepthView>& views, std::size_t of,
-                                   bool has_sky) {
+                                   double sky) {
   const DepthView& view = views[of];
   std::vector<ColoredPoint> points;
   for (int y = 0; y < view.camera.height; ++y) {
     for (int x = 0; x < view.camera.width; ++x) {
       const double distance = view.DistanceAt(x, y);
-      if (distance == 0 && !has_sky) continue;
+      if (distance == 0 && sky == 0) continue;
       const auto direction = DirectionFromPixel(view.camera, {x + 0.5, y + 0.5});
       if (!direction) continue;
       if (distance == 0) {
-        points.push_back(view.PointAt(*direction, kSkyDistance, x, y));
+        points.push_back(view.PointAt(*direction, sky, x, y));
         continue;
       }
       const ColoredPoint point = view.PointAt(*direction, distance, x, y);
@@ -77,6 +78,16 @@ std::vector<ColoredPoint> PointsOf(const std::vector<DepthView>& views, std::siz
     }
   }
   return points;
+}
+
+double SkyDistance(const std::vector<TargetView>& views) {
+  double distance = kLeastSky;
+  for (const TargetView& view : views) {
+    const double pixels = FocalLength(view.camera);  // in a direction of 1 radian
+    distance =
+        std::max(distance, kSkyPixels * view.normalized_from_camera.translation().norm() * pixels);
+  }
+  return distance;
 }
 
 // In contracted space: the farther away, the larger.
@@ -146,15 +157,15 @@ std::optional<SurfacePoints> FindSurfacePoints(const SceneModel& model,
     progress(rendered.size());
     if (stop) return std::nullopt;
   }
-  const bool has_sky = !model.Scene().has_alpha;
+  const double sky = model.Scene().has_alpha ? 0 : SkyDistance(views);
   std::vector<std::vector<ColoredPoint>> of_view(rendered.size());
   ParallelForEach(static_cast<std::int64_t>(rendered.size()), [&](std::int64_t i) {
-    of_view[i] = PointsOf(rendered, static_cast<std::size_t>(i), has_sky);
+    of_view[i] = PointsOf(rendered, static_cast<std::size_t>(i), sky);
   });
   std::vector<ColoredPoint> points;
   for (const auto& own : of_view) points.insert(points.end(), own.begin(), own.end());
-  const auto is_near = [](const ColoredPoint& point) {
-    return point.x_in_normalized.norm() < kSkyDistance / 2;
+  const auto is_near = [&](const ColoredPoint& point) {
+    return sky == 0 || point.x_in_normalized.norm() < sky / 2;
   };
   if (std::ranges::none_of(points, is_near)) points.clear();
   return SurfacePoints{OneInEachVoxel(points, VoxelSizeFor(points, wanted)), NearestOf(rendered)};

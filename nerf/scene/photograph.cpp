@@ -67,12 +67,14 @@ void Linearize(const PosedImage& image, const Camera& camera, int downscale,
 
 // Marks pixels as invalid that the lens does not cover.
 void LeaveToLens(const PosedImage& image, const Camera& downscaled, Photograph& photograph) {
-  const std::vector<std::uint32_t> covered = PixelsInLens(downscaled);
-  if (covered.empty()) return;
-  photograph.valid_pixels = Intersection(photograph.valid_pixels, covered);
+  const auto covered = PixelsInLens(downscaled);
+  if (!covered) return;
+  photograph.valid_pixels = Intersection(photograph.valid_pixels, *covered);
   if (photograph.valid_pixels.empty()) {
-    throw InputError("{}: its mask leaves only pixels that its lens does not cover; remove it",
-                     image.path.string());
+    throw InputError(
+        "{}: its lens covers no pixel that can be used; correct the parameters of its camera, or "
+        "its mask, or remove the photograph",
+        image.path.string());
   }
 }
 

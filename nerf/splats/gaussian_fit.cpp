@@ -30,20 +30,20 @@ constexpr double kRatedSteps = 2000, kRatePower = 0.5;
 // what is within it, and farther away the same step is less in every picture.
 class FarMeans {
  public:
-  // Before the step.
-  explicit FarMeans(std::span<const float> block) {
+  // Sets the means to 0: a step from there is not rounded to the digits of a far mean.
+  explicit FarMeans(std::span<float> block) {
     std::copy_n(block.begin(), before_.size(), before_.begin());
+    std::fill_n(block.begin(), before_.size(), 0.0f);
     for (int l = 0; l < kGaussiansInBlock; ++l) {
       const Eigen::Map<const Eigen::Vector3f, 0, Eigen::InnerStride<kGaussiansInBlock>> mean(
           &before_[l]);
       stride_[l] = std::max(1.0f, mean.norm());
     }
   }
-  // After a step as within the ball.
+  // After the step.
   void Stride(std::span<float> block) const {
     for (std::size_t k = 0; k < before_.size(); ++k) {
-      const float more = stride_[k % kGaussiansInBlock] - 1;
-      block[k] += more * (block[k] - before_[k]);
+      block[k] = before_[k] + stride_[k % kGaussiansInBlock] * block[k];
     }
   }
 

@@ -55,14 +55,18 @@ void SplitInto(GaussianFitState& state, std::uint64_t seed, std::int64_t from, s
   }
 }
 
-// A measure of how much a Gaussian shows: its opacity times the product of its two longest axes.
+// A measure of how much a Gaussian shows: its opacity times the product of its two longest axes, as
+// seen from the distance of its mean, or from 1 unit where it is nearer to the origin.
 double Visibility(const GaussianCloud& cloud, std::int64_t i) {
   const auto log_scale = [&](int k) {
     return static_cast<double>(cloud.At(i, kernels::kLogScaleRow + k));
   };
   const double area = std::exp(log_scale(0) + log_scale(1) + log_scale(2) -
                                std::min({log_scale(0), log_scale(1), log_scale(2)}));
-  return area / (1 + std::exp(-static_cast<double>(cloud.At(i, kernels::kOpacityRow))));
+  const Eigen::Vector3d mean(cloud.At(i, 0), cloud.At(i, 1), cloud.At(i, 2));
+  static_assert(kernels::kMeanRow == 0);
+  return area / std::max(1.0, mean.squaredNorm()) /
+         (1 + std::exp(-static_cast<double>(cloud.At(i, kernels::kOpacityRow))));
 }
 
 // The moments of some Gaussians; 0 of those that only fill the last block.

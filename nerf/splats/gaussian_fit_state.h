@@ -22,7 +22,8 @@ GaussianFitState BeginFit(const GaussianCloud& initial);
 // proportion to `need`, of which two smaller ones then take the place. Sets `need` to 0.
 void SplitWhereNeeded(GaussianFitState& state, const SplatOptions& options, std::uint64_t seed);
 
-// Leaves only so many of the Gaussians, those whose opacity times area is largest, in their order.
+// Leaves only so many of the Gaussians, those whose opacity times area, as
+// seen from the origin, is largest, in their order.
 void KeepMostVisible(GaussianFitState& state, std::int64_t count);
 
 }  // namespace nerf

@@ -42,20 +42,41 @@ void FillStored(const View& photograph, const std::array<float, 4>& scale, Targe
   }
 }
 
-void WeighClipped(const std::array<float, 3>& gains, TargetPicture& target) {
-  if (std::ranges::none_of(gains, [](float gain) { return gain > 1; })) return;
+// Which pixels are clipped in some channel whose gain is above 1: [height][width]; empty: none is.
+std::vector<char> ClippedPixels(const std::array<float, 3>& gains, const TargetPicture& target) {
+  if (std::ranges::none_of(gains, [](float gain) { return gain > 1; })) return {};
+  std::vector<char> clipped(static_cast<std::size_t>(target.width) * target.height);
   ParallelFor(target.height, kRowsTogether, [&](std::int64_t first, std::int64_t last) {
     for (auto y = static_cast<int>(first); y < last; ++y) {
-      float* const weight = target.Row(TargetPicture::kWeight, y);
+      const float* const opacity = target.Row(TargetPicture::kOpacity, y);
       for (int c = 0; c < 3; ++c) {
         if (gains[c] <= 1) continue;
         const float* const values = target.Row(c, y);
         for (int x = 0; x < target.width; ++x) {
-          if (values[x] * gains[c] > kClipped) weight[x] = std::min(weight[x], kWeightOfClipped);
+          const bool is_clipped = opacity[x] > 0 && values[x] * gains[c] > kClipped;
+          if (is_clipped) clipped[static_cast<std::size_t>(y) * target.width + x] = 1;
         }
       }
     }
   });
+  return clipped;
+}
+
+// Where one of the pixels that were averaged is clipped, so is their mean.
+void WeighClipped(const std::vector<char>& clipped, int width, int halvings,
+                  TargetPicture& target) {
+  const int side = 1 << halvings;
+  for (int y = 0; y < target.height; ++y) {
+    float* const weight = target.Row(TargetPicture::kWeight, y);
+    for (int x = 0; x < target.width; ++x) {
+      bool any = false;
+      for (int v = y * side; v < (y + 1) * side && !any; ++v) {
+        const char* const row = &clipped[static_cast<std::size_t>(v) * width];
+        any = std::any_of(row + x * side, row + (x + 1) * side, [](char is) { return is != 0; });
+      }
+      if (any) weight[x] = std::min(weight[x], kWeightOfClipped);
+    }
+  }
 }
 
 }  // namespace
@@ -83,8 +104,9 @@ void MakeTarget(const TargetView& view, TargetPicture& target) {
   } else {
     FillStored(photograph, scale, target);
   }
-  WeighClipped(view.gains, target);
+  const std::vector<char> clipped = ClippedPixels(view.gains, target);
   for (int i = 0; i < view.halvings; ++i) target = Halved(target);
+  if (!clipped.empty()) WeighClipped(clipped, photograph.camera.width, view.halvings, target);
 }
 
 TargetView Reduced(TargetView view, int halvings) {

@@ -9,7 +9,8 @@
 namespace nerf {
 
 // Points of the visual hull of what photographs with alpha show: the voxels of the cube around the
-// unit ball, normalized units, through which no photograph sees, and which border on others. Their
+// unit ball, normalized units, through which no photograph sees, although at least half look at
+// them, and which border on some that are seen through. Their
 // colours are means over the photographs that see them, or what is before them.
 //   wanted  points; voxels are chosen so that there are about as many
 //   returns empty where nothing is opaque in all photographs that see it

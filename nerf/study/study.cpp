@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <utility>
 
@@ -19,6 +18,7 @@
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/effect_decisions.h"
 #include "nerf/pipeline/representation_training.h"
+#include "nerf/render/non_finite_error.h"
 #include "nerf/study/crop.h"
 #include "nerf/study/pareto.h"
 #include "sfm/transforms_json.h"
@@ -212,8 +212,10 @@ json Study::Measure(const StudySetting& setting, double seconds, const std::atom
   try {
     trained = TrainRepresentations(trainer, photographs.data, run, stop, listener_);
     if (!trained.finished) return {};
-  } catch (const std::exception& error) {
-    // No Gaussians of such photographs, or of such a field; or their fit diverged.
+  } catch (const InputError& error) {  // no Gaussians of such photographs, or of such a field
+    if (config.train.representation != Representation::kSplats) throw;
+    why_not = error.what();
+  } catch (const NonFiniteError& error) {
     if (config.train.representation != Representation::kSplats) throw;
     why_not = error.what();
   }

@@ -1,13 +1,17 @@
 // Fits Gaussians to a capture for some seconds, and prints the PSNR on validation and held-out
 // photographs:
-//   splat_fit INPUT DOWNSCALE SECONDS|ITERATIONSi points|hull|random|RUN[+...] [splat option=value
-//   ...]
-// The fourth argument says where Gaussians begin: at the input's sparse points, at the visual hull
-// of what is opaque, at random points, or at the surfaces of the field of a trained run of the same
-// photographs. The time that this takes is part of SECONDS, that of training the field is not.
+//   splat_fit INPUT DOWNSCALE SECONDS|ITERATIONSi BEGIN [between=N] [splat option=value ...]
+// BEGIN, one of points, hull, random, RUN, or two with a plus, says where Gaussians begin: at the
+// input's sparse points, at the visual hull of what is opaque, at random points, or at the surfaces
+// of the field of a trained run of the same photographs. The time that this takes is part of
+// SECONDS, that of training the field is not. between=N adds N views that the field of RUN renders
+// between the cameras.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <limits>
 #include <string>
 
 #include "nerf/base/peak_memory.h"
@@ -16,6 +20,7 @@
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/prepared_scene.h"
 #include "nerf/pipeline/surface_points.h"
+#include "nerf/scene/camera.h"
 #include "nerf/splats/gaussian_camera.h"
 #include "nerf/splats/gaussian_fit.h"
 #include "nerf/splats/initial_gaussians.h"
@@ -56,6 +61,46 @@ double Psnr(const std::vector<View>& views, bool has_alpha, const GaussianCloud&
     sum += -10 * std::log10(error / count);
   }
   return views.empty() ? 0 : sum / static_cast<double>(views.size());
+}
+
+// Views that the field of a run renders halfway between neighbouring cameras, at half the
+// resolution.
+std::vector<View> ViewsBetween(const std::filesystem::path& folder,
+                               const std::vector<TargetView>& views, std::size_t count) {
+  const OpenedRun run = OpenRun(folder);
+  const SceneNormalization& frame = run.model->Scene().normalized_from_world;
+  std::vector<View> between;
+  for (std::size_t i = 0; i < count; ++i) {
+    const TargetView& view = views[i * views.size() / count];
+    const auto distance = [&](const TargetView& other) {
+      const double d =
+          (other.normalized_from_camera.translation() - view.normalized_from_camera.translation())
+              .norm();
+      return d > 0 ? d : std::numeric_limits<double>::infinity();
+    };
+    const TargetView& other = *std::ranges::min_element(views, {}, distance);
+    View made;
+    made.camera = Downscaled(view.camera, 2);
+    made.normalized_from_camera =
+        Eigen::Translation3d((view.normalized_from_camera.translation() +
+                              other.normalized_from_camera.translation()) /
+                             2) *
+        Eigen::Quaterniond(view.normalized_from_camera.linear())
+            .slerp(0.5, Eigen::Quaterniond(other.normalized_from_camera.linear()));
+    const RenderedView rendered =
+        run.model->Render({made.camera, frame.WorldFromCamera(made.normalized_from_camera)});
+    for (std::size_t k = 0; k < rendered.opacity.pixels.size(); ++k) {
+      // What has alpha is rendered before white.
+      const float alpha = run.model->Scene().has_alpha ? rendered.opacity.pixels[k] : 1;
+      for (int c = 0; c < 3; ++c) {
+        const float straight = (rendered.rgb.pixels[3 * k + c] - (1 - alpha)) / alpha;
+        made.rgba.push_back(static_cast<Eigen::half>(alpha > 0 ? straight : 0.0f));
+      }
+      made.rgba.push_back(static_cast<Eigen::half>(alpha));
+    }
+    between.push_back(std::move(made));
+  }
+  return between;
 }
 
 void SetOption(SplatOptions& options, const std::string& assignment) {
@@ -104,13 +149,24 @@ std::vector<ColoredPoint> PointsOf(const std::string& begin, const PreparedScene
 }
 
 void Run(int argc, char** argv) {
+  if (argc < 5)
+    throw std::runtime_error("splat_fit INPUT DOWNSCALE SECONDS BEGIN [option=value ...]");
   DataOptions data;
   data.downscale = std::stoi(argv[2]);
   // 30: seconds; 2000i: iterations
   const double length = std::stod(argv[3]);
   const bool by_steps = std::string(argv[3]).back() == 'i';
   SplatOptions options;
-  for (int i = 5; i < argc; ++i) SetOption(options, argv[i]);
+  std::size_t between = 0;
+  for (int i = 5; i < argc; ++i) {
+    const std::string option = argv[i];
+    if (option.starts_with("between=")) {
+      between = std::stoul(option.substr(8));
+    } else {
+      SetOption(options, option);
+    }
+  }
+  if (options.count == 0) options.count = 50000;
   const PipelineListener listener = [](const auto&) {};
   PreparedScene scene = PrepareScene(argv[1], "out/splat_fit", data, listener);
   const Dataset train = LoadDataset(scene.posed, data, {}, scene.normalized_from_world);
@@ -122,9 +178,12 @@ void Run(int argc, char** argv) {
       image.split = Split::kTest;
   }
   const Dataset test = LoadDataset(held_out, data, {}, scene.normalized_from_world);
+  std::vector<TargetView> views = TargetViewsOf(train.train);
+  const std::vector<View> made =
+      between > 0 ? ViewsBetween(argv[4], views, between) : std::vector<View>();
   const Stopwatch watch;
-  const std::vector<TargetView> views = TargetViewsOf(train.train);
   const std::vector<ColoredPoint> points = PointsOf(argv[4], scene, views, options.count);
+  for (const TargetView& view : TargetViewsOf(made)) views.push_back(view);
   GaussianFit fit(views, train.has_alpha,
                   BeginFit(GaussiansAtPoints(points, options.count, options.harmonics_order, 1)),
                   options, kNear, 1);
