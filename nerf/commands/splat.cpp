@@ -2,6 +2,8 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,6 +29,12 @@ struct SplatArguments {
   std::string run;
   int threads = 0;
 };
+
+// Of an option: what is wrong with it; empty: nothing. CLI::PositiveNumber lets NaN pass.
+std::string RefuseUnlessPositive(const std::string& text) {
+  const double value = std::strtod(text.c_str(), nullptr);
+  return value > 0 && std::isfinite(value) ? "" : text + ": use a number above 0";
+}
 
 void WritePly(const SplatArguments& arguments) {
   if (arguments.ply->empty()) throw InputError("--ply: name the file to write, like scene.ply");
@@ -95,12 +103,12 @@ void AddSplatCommand(CLI::App& app) {
                         ->add_option("--megabytes", arguments->request.megabytes,
                                      "as many Gaussians as a PLY file of this size has "
                                      "[splats.count]")
-                        ->check(CLI::PositiveNumber);
+                        ->check(RefuseUnlessPositive);
   auto* frame = command
                     ->add_option("--seconds-per-frame", arguments->request.seconds_per_frame,
                                  "at most as many as this machine draws in this time, at the "
                                  "resolution of the photographs: 0.005")
-                    ->check(CLI::PositiveNumber);
+                    ->check(RefuseUnlessPositive);
   auto* resume =
       command->add_flag("--resume", arguments->request.resume,
                         "continue a fit that was interrupted, with its options and its plan");

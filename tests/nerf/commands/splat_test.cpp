@@ -173,6 +173,7 @@ TEST_F(SplatCommand, AFrameTimeLimitsTheNumberOfGaussians) {
   const auto fast = RunNerf(fit + " --seconds-per-frame 1e-9");
   EXPECT_THAT(fast.output, HasSubstr("fitted 16 Gaussians"));
   EXPECT_EQ(RunNerf("splat " + Path("run") + " --seconds-per-frame 0").exit_status, 2);
+  EXPECT_EQ(RunNerf("splat " + Path("run") + " --seconds-per-frame nan").exit_status, 2);
   EXPECT_EQ(RunNerf("splat " + Path("run") + " --megabytes 0").exit_status, 2);
 }
 
