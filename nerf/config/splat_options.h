@@ -30,7 +30,7 @@ struct SplatOptions {
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
     option("count", o.count, "", Between(0, 1 << 24),
-           "Gaussians; 0: by the size of photographs, 50000 up to 400x400 pixels");
+           "Gaussians; 0: by the size of photographs and the time, 50000 up to 400x400 pixels");
     option("steps", o.steps, "iterations", Between(1, 1 << 24), "without a time budget");
     option("share", o.share, "of a time budget", Between(0.1, 0.9),
            "in which nerf train fits Gaussians, after the field");
@@ -38,9 +38,9 @@ struct SplatOptions {
            "of the spherical harmonics by which colour depends on direction");
     option("structural", o.structural, "", Between(0, 1), "share of 1 - SSIM in the loss");
     option("quarter_resolution", o.quarter_resolution, "of the training", Between(0, 1),
-           "at first, at a quarter of the resolution");
+           "at first, at a quarter of the resolution; longer for photographs above 400x400 pixels");
     option("half_resolution", o.half_resolution, "of the training", Between(0, 1),
-           "until then, at half the resolution");
+           "until then, at half the resolution; longer for photographs above 400x400 pixels");
     option("split_until", o.split_until, "of the training", Between(0, 1),
            "until then invisible Gaussians split others");
     option("split_every", o.split_every, "iterations", Between(1, 1 << 20), "between two splits");

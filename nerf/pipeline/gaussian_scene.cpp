@@ -27,8 +27,13 @@ constexpr double kNearQuantile = 0.02;  // of the distances from a camera, at a 
 // worth: splitting makes the other Gaussians.
 constexpr int kMostPoints = 80000;
 
-// Gaussians where their number is not given: it grows with the side of the photographs.
+// Gaussians where their number is not given: it grows with the side of the photographs in a short
+// fit, and with their pixels in one that has time to place so many.
 constexpr double kFewestChosen = 50000, kMostChosen = 200000, kPixelsOfFewest = 400 * 400;
+constexpr double kShortFit = 45, kLongFit = 120;  // seconds
+// What is left of the part of a fit in full, and above a quarter, with photographs of so many times
+// the pixels.
+constexpr double kFullByPixels = -0.25;
 constexpr double kFewestOfAll = 1000;  // where memory is short; fewer are no scene
 
 // Of a Gaussian beside its parameters and their two moments: projections, and what it has in about
@@ -67,24 +72,31 @@ SurfacePoints HullOf(const std::vector<TargetView>& views, std::int64_t wanted) 
 
 }  // namespace
 
-SplatOptions SplatOptionsFor(const SplatOptions& options, const Dataset& data) {
-  if (options.count > 0) return options;
+SplatOptions SplatOptionsFor(const SplatOptions& options, const Dataset& data, double seconds) {
+  if (options.count > 0) return options;  // also where this was done before
   double pixels = 0;
   for (const View& view : data.train) pixels += static_cast<double>(PixelCount(view.camera));
   pixels /= static_cast<double>(std::max<std::size_t>(1, data.train.size()));
-  const double growth = std::sqrt(pixels / kPixelsOfFewest);
+  const double larger = std::max(1.0, pixels / kPixelsOfFewest);
+  const double time =
+      seconds > 0 ? std::log(seconds / kShortFit) / std::log(kLongFit / kShortFit) : 1;
+  const double growth = std::pow(larger, 0.5 + 0.5 * std::clamp(time, 0.0, 1.0));
   SplatOptions result = options;
+  for (double* const part : {&result.quarter_resolution, &result.half_resolution}) {
+    *part = 1 - (1 - *part) * std::pow(larger, kFullByPixels);
+  }
   result.count = static_cast<int>(std::clamp(kFewestChosen * growth, kFewestChosen, kMostChosen));
   const double fitting = AvailableMegabytes() / MegabytesOfEach(options);
   if (fitting < result.count) result.count = static_cast<int>(std::max(fitting, kFewestOfAll));
   return result;
 }
 
-GaussianScene GaussianSceneOf(const Model& field, const Dataset& data) {
-  return GaussianSceneOf(field, field.config.splats, data);
+GaussianScene GaussianSceneOf(const Model& field, const Dataset& data, double seconds) {
+  return GaussianSceneOf(field, field.config.splats, data, seconds);
 }
 
-GaussianScene GaussianSceneOf(const Model& field, const SplatOptions& splats, const Dataset& data) {
+GaussianScene GaussianSceneOf(const Model& field, const SplatOptions& splats, const Dataset& data,
+                              double seconds) {
   if (field.scene.encoding == ColorEncoding::kLinear) {
     throw InputError(
         "the photographs are linear, to which Gaussians are not fitted yet; use the field: "
@@ -92,7 +104,7 @@ GaussianScene GaussianSceneOf(const Model& field, const SplatOptions& splats, co
   }
   GaussianScene scene;
   scene.config = field.config;
-  scene.config.splats = SplatOptionsFor(splats, data);
+  scene.config.splats = SplatOptionsFor(splats, data, seconds);
   if (!scene.config.effects.view_dependence) scene.config.splats.harmonics_order = 0;
   scene.facts = field.scene;
   scene.train = RefinedViews(field, data.train, field.exposure != nullptr);

@@ -23,16 +23,20 @@ struct GaussianScene {
   std::vector<TargetView> train, validation;
 };
 
-// The options of a fit to photographs: with a number of Gaussians where none is given, at
-// most as many as memory holds.
-SplatOptions SplatOptionsFor(const SplatOptions& options, const Dataset& data);
+// The options of a fit to photographs. Where no number of Gaussians is given (0), it grows with the
+// photographs, and more where there is time for more; at most as many as memory holds. Low
+// resolutions then take longer the more pixels photographs have.
+//   seconds  of the fit; 0: it is by iterations, and has time
+SplatOptions SplatOptionsFor(const SplatOptions& options, const Dataset& data, double seconds);
 
 // Throws InputError for linear photographs, to which Gaussians are not fitted yet.
-//   splats  options of the fit; other options are those of the field
-//   data    must outlive the result
-GaussianScene GaussianSceneOf(const Model& field, const SplatOptions& splats, const Dataset& data);
+//   splats   options of the fit; other options are those of the field
+//   data     must outlive the result
+//   seconds  see SplatOptionsFor
+GaussianScene GaussianSceneOf(const Model& field, const SplatOptions& splats, const Dataset& data,
+                              double seconds);
 // The same with the options of the field.
-GaussianScene GaussianSceneOf(const Model& field, const Dataset& data);
+GaussianScene GaussianSceneOf(const Model& field, const Dataset& data, double seconds);
 
 // Why there is too little memory for a fit; empty: there is enough.
 std::string TooLittleMemory(const SplatOptions& options);

@@ -84,7 +84,7 @@ std::optional<GaussianSession> MakeGaussians(const GaussianRequest& request, con
   const Dataset data =
       LoadPhotographs(sfm::ReadTransformsJson(PosesPath(request.run)), field.config,
                       field.scene.normalized_from_world, request.run, listener);
-  const GaussianScene scene = GaussianSceneOf(field, splats, data);
+  const GaussianScene scene = GaussianSceneOf(field, splats, data, request.time_budget);
   const GaussianValidation validation(scene, data);
   if (!start) {
     WarnOfFieldsEffects(scene.config, listener);

@@ -68,6 +68,8 @@ class Training {
   bool HasBudget() const { return options_.time_budget > 0; }
   // Of what is left of the time budget when training begins.
   double Part(double share) const { return share * (options_.time_budget - spent_); }
+  // Of the Gaussians, planned; 0: they take iterations.
+  double FitSeconds() const { return splats_.share * options_.time_budget; }
   std::int64_t SplatSteps() const { return std::min<std::int64_t>(splats_.steps, options_.steps); }
 
   void TrainField(double until) {
@@ -187,7 +189,7 @@ class Training {
 
   // A fit that ended in an earlier command, maybe before it was compared.
   void RecordEndedBefore() {
-    const GaussianScene scene = GaussianSceneOf(trainer_.GetModel(), data_);
+    const GaussianScene scene = GaussianSceneOf(trainer_.GetModel(), data_, FitSeconds());
     const GaussianValidation validation(scene, data_);
     const auto model = OpenGaussians(run_);
     const double psnr = record_.reached      ? record_.reached->splats
@@ -199,7 +201,7 @@ class Training {
   // False where it was stopped.
   //   again  where a fit was interrupted; its plan is in `plan`
   bool MakeSplats(std::optional<GaussianStart> again, GaussianPlan plan) {
-    const GaussianScene scene = GaussianSceneOf(trainer_.GetModel(), data_);
+    const GaussianScene scene = GaussianSceneOf(trainer_.GetModel(), data_, FitSeconds());
     const GaussianValidation validation(scene, data_);
     std::optional<GaussianStart> start = std::move(again);
     if (!start) {
@@ -246,7 +248,8 @@ std::string WhyNoGaussians(const Config& config, const Dataset& data) {
   if (config.train.representation == Representation::kAuto && data.validation.empty()) {
     return "without validation photographs nothing can be compared";
   }
-  return TooLittleMemory(SplatOptionsFor(config.splats, data));
+  return TooLittleMemory(
+      SplatOptionsFor(config.splats, data, config.splats.share * config.train.time_budget));
 }
 
 RepresentationsTrained TrainRepresentations(Trainer& trainer, const Dataset& data,

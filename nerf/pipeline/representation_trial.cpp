@@ -26,7 +26,7 @@ constexpr double kPromise = 1.5;
 
 // The scene at a resolution at which a trial is short.
 GaussianScene ReducedScene(const Model& field, const Dataset& data) {
-  GaussianScene scene = GaussianSceneOf(field, data);
+  GaussianScene scene = GaussianSceneOf(field, data, kLeastFit);
   int halvings = 0;
   for (const TargetView& view : scene.train) {
     const int side = std::max(view.camera.width, view.camera.height);

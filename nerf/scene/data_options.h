@@ -8,7 +8,7 @@ namespace nerf {
 struct DataOptions {
   int downscale = 1;
   int film_frames = 0;
-  double points_share = 0.06;
+  double points_share = 0.08;
   int test_every = 8;
   int validation_images = 16;
   int memory_mb = 1024;

@@ -43,7 +43,7 @@ TEST(GaussianValidation, FindsThePixelsOfAView) {
     }
   }
   const Model field = MakeModel(config, small.scene);
-  const GaussianScene scene = GaussianSceneOf(field, small.data);
+  const GaussianScene scene = GaussianSceneOf(field, small.data, 0);
   const GaussianValidation validation(scene, small.data);
   EXPECT_GT(validation.Psnr(cloud, kNear), 50);
 }

@@ -138,7 +138,7 @@ TEST(RepresentationTraining, AMillimetreAndTenKilometresGiveTheSameGaussians) {
 TEST(RepresentationTraining, MoreGaussiansThanMemoryHoldsAreRefusedWithTheirNumber) {
   const test::SmallCapture small = CaptureWithValidation();
   const Config config = ConfigOf(Representation::kSplats);
-  GaussianScene scene = GaussianSceneOf(MakeModel(config, small.scene), small.data);
+  GaussianScene scene = GaussianSceneOf(MakeModel(config, small.scene), small.data, 0);
   scene.config.splats.count = 2000000000;
   const auto field = ModelSnapshot::Copy(MakeModel(config, small.scene), 0);
   EXPECT_THAT(
