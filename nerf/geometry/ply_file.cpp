@@ -27,6 +27,12 @@ std::string Header(const Mesh& mesh) {
       "property float y\n"
       "property float z\n",
       mesh.vertices.size());
+  if (!mesh.normals.empty()) {
+    header +=
+        "property float nx\n"
+        "property float ny\n"
+        "property float nz\n";
+  }
   if (!mesh.colors.empty()) {
     header +=
         "property uchar red\n"
@@ -41,6 +47,10 @@ std::string Header(const Mesh& mesh) {
 }
 
 void Check(const Mesh& mesh) {
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
+    throw std::invalid_argument(
+        fmt::format("{} normals for {} vertices", mesh.normals.size(), mesh.vertices.size()));
+  }
   if (!mesh.colors.empty() && mesh.colors.size() != mesh.vertices.size()) {
     throw std::invalid_argument(
         fmt::format("{} colours for {} vertices", mesh.colors.size(), mesh.vertices.size()));
@@ -61,6 +71,7 @@ void WritePly(const std::filesystem::path& file, const Mesh& mesh) {
   std::string bytes = Header(mesh);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     Append(bytes, mesh.vertices[i].data(), 3);
+    if (!mesh.normals.empty()) Append(bytes, mesh.normals[i].data(), 3);
     if (!mesh.colors.empty()) Append(bytes, mesh.colors[i].data(), 3);
   }
   for (const auto& face : mesh.faces) {
