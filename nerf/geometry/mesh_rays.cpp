@@ -25,6 +25,19 @@ RTCRay RayFrom(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, 
 
 }  // namespace
 
+Eigen::Vector3f NormalAt(const Mesh& mesh, const MeshHit& hit) {
+  const auto& face = mesh.faces[static_cast<std::size_t>(hit.face)];
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  for (int k = 0; k < 3; ++k) normal += hit.barycentric[k] * mesh.normals[face[k]];
+  return normal.stableNormalized();
+}
+
+std::int32_t NearestVertex(const Mesh& mesh, const MeshHit& hit) {
+  int nearest = 0;
+  hit.barycentric.maxCoeff(&nearest);
+  return mesh.faces[static_cast<std::size_t>(hit.face)][nearest];
+}
+
 struct MeshRays::Scene {
   RTCDevice device;
   RTCScene scene;

@@ -18,6 +18,11 @@ struct MeshHit {
   bool is_front = true;  // the ray comes from the side on which vertices are counter-clockwise
 };
 
+// The normal at a hit, interpolated between those of the vertices; 0: invalid.
+Eigen::Vector3f NormalAt(const Mesh& mesh, const MeshHit& hit);
+// The vertex of its face that is nearest to a hit.
+std::int32_t NearestVertex(const Mesh& mesh, const MeshHit& hit);
+
 // Rays against a mesh, by Embree. All members are const and thread-safe. The result does not depend
 // on the number of threads.
 class MeshRays {

@@ -23,7 +23,7 @@ constexpr int kBlock = 4;  // cells, along an axis
 // What one view says about points.
 class Observer {
  public:
-  Observer(const DepthView& view, double cell)
+  Observer(const DepthMap& view, double cell)
       : view_(view),
         silhouette_(SilhouetteDistance(view.opacity)),
         cell_(cell),
@@ -89,7 +89,7 @@ class Observer {
            down * ((1 - across) * at(0, 1) + across * at(1, 1));
   }
 
-  const DepthView& view_;
+  const DepthMap& view_;
   Image silhouette_;
   double cell_, focal_;
   Eigen::Isometry3d camera_from_grid_;
@@ -147,9 +147,9 @@ std::optional<float> Uniform(const ScalarGrid& blocks, int x, int y, int z) {
 
 }  // namespace
 
-ScalarGrid FuseDepth(const std::vector<DepthView>& views, const FusionBox& where) {
+ScalarGrid FuseDepth(const std::vector<DepthMap>& views, const FusionBox& where) {
   std::vector<Observer> observers;
-  for (const DepthView& view : views) observers.emplace_back(view, where.cell);
+  for (const DepthMap& view : views) observers.emplace_back(view, where.cell);
   const double truncation = where.cell * where.truncation;
   // Most of space is free or unknown. Where it is at all corners of a block, with a truncation of
   // more than the block's diagonal, it is within.

@@ -10,7 +10,7 @@
 namespace nerf {
 
 // The distances that one camera sees, in the frame and units of the grid.
-struct DepthView {
+struct DepthMap {
   Camera camera;
   Eigen::Isometry3d grid_from_camera;
   Image distance;  // 1 channel, along the ray; where opacity is below 1/2 it is ignored
@@ -31,6 +31,6 @@ struct FusionBox {
 // Source: Curless and Levoy 1996, "A Volumetric Method for Building Complex Models from Range
 // Images", with equal weights. (To weight views by the cosine at which they see a surface makes the
 // normals of noisy depth worse.)
-ScalarGrid FuseDepth(const std::vector<DepthView>& views, const FusionBox& where);
+ScalarGrid FuseDepth(const std::vector<DepthMap>& views, const FusionBox& where);
 
 }  // namespace nerf

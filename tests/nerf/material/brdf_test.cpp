@@ -8,6 +8,7 @@
 #include "nerf/material/coated_diffuse.h"
 #include "nerf/material/lambert.h"
 #include "nerf/material/merl.h"
+#include "nerf/material/metallic_roughness.h"
 #include "tests/support/chi_square.h"
 
 namespace nerf {
@@ -37,6 +38,9 @@ std::vector<Named> AllBrdfs() {
           {"Metal_1", std::make_shared<Conductor>(gold, 1.0)},
           {"Plastic_0_2", std::make_shared<CoatedDiffuse>(red, 1.5, 0.2)},
           {"Plastic_0_7", std::make_shared<CoatedDiffuse>(red, 1.5, 0.7)},
+          {"Dielectric", std::make_shared<MetallicRoughness>(red, 0.5, 0.0)},
+          {"HalfMetal", std::make_shared<MetallicRoughness>(gold, 0.6, 0.5)},
+          {"White", std::make_shared<MetallicRoughness>(Color::Ones(), 1.0, 0.0)},
           {"Merl", std::make_shared<MerlBrdf>(MerlBrdf::Tabulate(Conductor(gold, 0.3)))}};
 }
 

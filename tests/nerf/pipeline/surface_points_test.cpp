@@ -6,59 +6,14 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/pipeline/gaussian_scene.h"
-#include "nerf/scene/camera.h"
-#include "tests/support/analytic_capture.h"
+#include "tests/support/ball_model.h"
 
 namespace nerf {
 namespace {
 
-constexpr double kRadius = 0.6;
-
-// A red ball at the origin, before a blue sky.
-class BallModel : public SceneModel {
- public:
-  explicit BallModel(bool has_alpha, double radius = kRadius) : radius_(radius) {
-    scene_.has_alpha = has_alpha;
-  }
-
-  RenderedView Render(const ViewRequest& view) const override {
-    const int width = view.camera.width, height = view.camera.height;
-    RenderedView rendered;
-    rendered.rgb = Image(width, height, 3);
-    rendered.opacity = rendered.depth = Image(width, height, 1);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const Eigen::Vector3d direction =
-            view.world_from_camera.linear() * *DirectionFromPixel(view.camera, {x + 0.5, y + 0.5});
-        const Eigen::Vector3d origin = view.world_from_camera.translation();
-        const double along = origin.dot(direction);
-        const double root = along * along - origin.squaredNorm() + radius_ * radius_;
-        const bool meets = root > 0;
-        rendered.rgb.At(x, y)[meets ? 0 : 2] = 0.7f;
-        *rendered.opacity.At(x, y) = meets;
-        *rendered.depth.At(x, y) = meets ? static_cast<float>(-along - std::sqrt(root)) : 0.0f;
-      }
-    }
-    return rendered;
-  }
-  const Config& GetConfig() const override { return config_; }
-  const SceneFacts& Scene() const override { return scene_; }
-  std::int64_t Step() const override { return 0; }
-
- private:
-  double radius_;
-  Config config_;
-  SceneFacts scene_;
-};
-
-// Photographs of the ball, which is all that they have.
-test::AnalyticCapture CaptureOfBall() {
-  const auto ball = [](const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
-    const bool meets = origin.cross(direction).norm() < static_cast<float>(kRadius);
-    return meets ? Eigen::Vector4f(0.7f, 0, 0, 1) : Eigen::Vector4f::Zero().eval();
-  };
-  return {test::CameraRing(24, 4, 1), 120, 120, ball, true};
-}
+using test::BallModel;
+using test::CaptureOfBall;
+using test::kBallRadius;
 
 SurfacePoints PointsOf(const BallModel& model, std::int64_t wanted = 4000) {
   const test::AnalyticCapture capture = CaptureOfBall();
@@ -71,10 +26,10 @@ TEST(SurfacePoints, AreOnTheSurface) {
   EXPECT_GT(found.points.size(), 2000u);
   EXPECT_LE(found.points.size(), 4000u);
   for (const ColoredPoint& point : found.points) {
-    EXPECT_NEAR(point.x_in_normalized.norm(), kRadius, 1e-4);
+    EXPECT_NEAR(point.x_in_normalized.norm(), kBallRadius, 1e-4);
     EXPECT_EQ(point.rgb, Eigen::Vector3f(0.7f, 0, 0));
   }
-  EXPECT_NEAR(found.nearest, std::hypot(4, 1) - kRadius, 0.2);
+  EXPECT_NEAR(found.nearest, std::hypot(4, 1) - kBallRadius, 0.2);
 }
 
 TEST(SurfacePoints, WithoutASurfaceAreASky) {
@@ -109,8 +64,8 @@ TEST(StartAtSurfaces, BeginsAtTheVisualHullWithoutSurfaces) {
     ++visible;
     Eigen::Vector3d mean;
     for (int k = 0; k < 3; ++k) mean[k] = start->state.cloud.At(i, kernels::kMeanRow + k);
-    EXPECT_GT(mean.norm(), kRadius - 0.1);
-    EXPECT_LT(mean.norm(), kRadius + 0.3);  // no camera looks from above
+    EXPECT_GT(mean.norm(), kBallRadius - 0.1);
+    EXPECT_LT(mean.norm(), kBallRadius + 0.3);  // no camera looks from above
   }
   EXPECT_GT(visible, 1000);
   EXPECT_GT(start->near, 1);

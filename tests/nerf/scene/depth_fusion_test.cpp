@@ -14,8 +14,8 @@ namespace {
 constexpr double kRadius = 0.5;
 
 // A camera that looks at the origin, and what it sees of a sphere there.
-DepthView SphereFrom(const Eigen::Vector3d& position) {
-  DepthView view;
+DepthMap SphereFrom(const Eigen::Vector3d& position) {
+  DepthMap view;
   view.camera = PinholeFromFov(80, 64, 0.6);
   const Eigen::Vector3d z = -position.normalized();
   const Eigen::Vector3d x = z.unitOrthogonal(), y = z.cross(x);
@@ -36,8 +36,8 @@ DepthView SphereFrom(const Eigen::Vector3d& position) {
   return view;
 }
 
-std::vector<DepthView> ViewsAround(int count) {
-  std::vector<DepthView> views;
+std::vector<DepthMap> ViewsAround(int count) {
+  std::vector<DepthMap> views;
   for (int i = 0; i < count; ++i) views.push_back(SphereFrom(3 * FibonacciDirection(i, count)));
   return views;
 }

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "nerf/field/libtorch.h"
+#include "nerf/light/environment_map.h"
+
+namespace nerf {
+
+// The axes of EnvironmentMap (y up, centre of the image -z) from those of a world in which z is up
+// and the centre of a map is +x, as in Blender and in the NeRF-synthetic captures: a direction of
+// azimuth a about z, counter-clockwise from +x, is at u = 1/2 - a / (2 pi).
+Eigen::Matrix3d MapFromZUpWorld();
+
+// The radiance of a map from each of the directions: the mean over what is nearer to it than to the
+// others, so that small lamps are not lost and the total power is kept.
+//   directions          [D,3] float, unit, spread over the sphere
+//   map_from_directions  rotation
+//   returns             [D,3]
+torch::Tensor RadianceFrom(const EnvironmentMap& map, const torch::Tensor& directions,
+                           const Eigen::Matrix3d& map_from_directions);
+
+}  // namespace nerf

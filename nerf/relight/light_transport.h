@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "nerf/geometry/mesh.h"
+#include "nerf/geometry/mesh_rays.h"
+#include "nerf/relight/surface_shading.h"
+
+namespace nerf {
+
+// What stands between the vertices of a surface and the light from fixed directions, traced once.
+struct LightTransport {
+  // Of a direction from which the environment reaches a vertex.
+  static constexpr std::int32_t kOpen = -1;
+
+  torch::Tensor directions;  // [D,3] unit, spread evenly over the sphere
+  // [V,D] int32: the vertex at which a ray of vertex v in a direction ends, or kOpen.
+  torch::Tensor blocker;
+};
+
+// Rays begin at a distance `offset` before a vertex, along its normal, so that the surface does not
+// shadow itself where it is slightly uneven. Directions well below the horizon of a vertex, and all
+// directions of a vertex without normal, are open: nothing of them is reflected. Uses all threads.
+LightTransport TraceLight(const Mesh& surface, const MeshRays& rays, int directions, float offset);
+
+// The light that arrives at vertices: of the environment where it is open, and else what the
+// blocking vertices radiate, to all directions alike.
+//   vertices     [P] int64
+//   environment  [D,3] radiance
+//   radiance     [V,3] of the vertices
+// Differentiable in both radiances.
+ArrivingLight LightAt(const LightTransport& transport, const torch::Tensor& vertices,
+                      const torch::Tensor& environment, const torch::Tensor& radiance);
+
+}  // namespace nerf
