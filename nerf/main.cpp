@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
     nerf::AddSelfcheckCommand(app);
     nerf::AddStudyCommand(app);
     nerf::AddPhotometricStereoCommand(app);
+    nerf::AddMaterialsCommand(app);
     nerf::AddRelightCommand(app);
     app.parse(argc, argv);
     return 0;

@@ -10,6 +10,7 @@ namespace nerf {
 void AddSampleCommand(CLI::App& app);
 void AddPosesCommand(CLI::App& app);
 void AddPhotometricStereoCommand(CLI::App& app);
+void AddMaterialsCommand(CLI::App& app);
 void AddRelightCommand(CLI::App& app);
 void AddTrainCommand(CLI::App& app);
 void AddSplatCommand(CLI::App& app);

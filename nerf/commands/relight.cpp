@@ -16,8 +16,10 @@
 #include "nerf/base/interrupt.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/commands/commands.h"
+#include "nerf/commands/environment_option.h"
 #include "nerf/commands/input_encoding.h"
 #include "nerf/commands/olat_flags.h"
+#include "nerf/commands/relight_run.h"
 #include "nerf/commands/threads.h"
 #include "nerf/image/image_io.h"
 #include "nerf/image/image_metrics.h"
@@ -45,6 +47,9 @@ struct RelightArguments {
   std::string truth;
   int memory_mb = 1024;
   int threads = 0;
+  // Of a run only.
+  ShotOptions shots;
+  std::optional<int> bounces;
 
   void Check() const {
     if (frames < 0 || frames > 10'000) {
@@ -60,18 +65,28 @@ struct RelightArguments {
     if (frames > 0 && !FfmpegIsInstalled()) {
       throw InputError("--frames needs the program ffmpeg: install it");
     }
+    if (IsRun(capture)) {
+      CheckForRun();
+    } else if (!shots.image.empty() || !shots.pose.empty() || !shots.path.empty() ||
+               shots.downscale || bounces) {
+      throw InputError(
+          "{}: is no trained run; --image, --pose, --path, --downscale and --bounces are of runs",
+          capture);
+    }
+  }
+
+  void CheckForRun() const {
+    if (!truth.empty() || olat.lights != LightCalibration::kAuto ||
+        olat.encoding != InputEncoding::kAuto) {
+      throw InputError(
+          "{}: is a trained run; --truth, --lights and --encoding are of light-stage captures",
+          capture);
+    }
+    if (frames > 0 && shots.path.empty()) {
+      throw InputError("--frames of a run is the number of poses of --path: give --path");
+    }
   }
 };
-
-// The map in a file, or a uniform one with the colour of a named light.
-EnvironmentMap OpenEnvironment(const std::string& name) {
-  if (!fs::exists(name)) {
-    if (const auto color = ColorOfLight(name)) return EnvironmentMap::Uniform(*color);
-    throw InputError("--environment {}: neither a file nor a named light; the names are {}", name,
-                     kLightNames);
-  }
-  return EnvironmentMap::Read(name);
-}
 
 // Called before the images are summed, so that a wrong file is reported at once.
 Image OpenTruth(const fs::path& file, const OlatCapture& capture) {
@@ -116,6 +131,14 @@ void RunRelight(const RelightArguments& arguments) {
   const Stopwatch watch;
   arguments.Check();
   UseThreads(arguments.threads);
+  if (IsRun(arguments.capture)) {
+    RelightRunArguments of_run{arguments.capture, arguments.output,   arguments.environment,
+                               arguments.rotate,  arguments.exposure, arguments.bounces.value_or(2),
+                               arguments.shots};
+    if (arguments.frames > 0) of_run.shots.frames = arguments.frames;
+    RelightRun(of_run, OpenEnvironment(arguments.environment));
+    return;
+  }
   const auto& stop = StopOnInterrupt();
   const OlatCapture capture = OpenCapture(arguments);
   const fs::path folder = arguments.output.empty() ? capture.name + "-relit" : arguments.output;
@@ -163,35 +186,58 @@ void RunRelight(const RelightArguments& arguments) {
   if (psnr) fmt::print("PSNR {:.2f} dB against {}\n", *psnr, arguments.truth);
 }
 
+void AddRunOptions(CLI::App& command, RelightArguments& arguments) {
+  auto* image = command.add_option("--image", arguments.shots.image,
+                                   "of a run: the view of this photograph [held-out ones]");
+  auto* pose =
+      command.add_option("--pose", arguments.shots.pose, "of a run: the view of this JSON file")
+          ->excludes(image);
+  command
+      .add_option("--path", arguments.shots.path,
+                  "of a run: orbit, spiral, training, or a JSON file")
+      ->excludes(image)
+      ->excludes(pose);
+  command
+      .add_option("--downscale", arguments.shots.downscale,
+                  "of a run: reduce the resolution by this factor")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--bounces", arguments.bounces,
+                  "of a run: how often light is reflected before it is seen [2]")
+      ->check(CLI::Range(0, 64));
+}
+
 }  // namespace
 
 void AddRelightCommand(CLI::App& app) {
   auto arguments = std::make_shared<RelightArguments>();
   CLI::App* command = app.add_subcommand(
-      "relight",
-      "Renders a light-stage capture under an environment, as a picture or as a film of its "
-      "rotation");
+      "relight", "Renders a trained run, or a light-stage capture, under an environment");
   command
       ->add_option("capture", arguments->capture,
-                   "a folder with an image for each light, and lights.txt or a folder chrome")
+                   "a run with materials; or a folder with an image for each light, and lights.txt "
+                   "or a folder chrome")
       ->required();
   command
       ->add_option(
           "--environment", arguments->environment,
           std::string("an HDR or EXR map, twice as wide as high, or a named light: ") + kLightNames)
       ->required();
-  command->add_option("-o,--output", arguments->output, "output folder [NAME-relit]");
+  command->add_option("-o,--output", arguments->output,
+                      "output folder [RUN/relit/MAP, or NAME-relit]");
   command
       ->add_option("--rotate", arguments->rotate,
                    "rotation of the environment about the vertical axis, degrees")
       ->capture_default_str();
-  command->add_option("--frames", arguments->frames,
-                      "number of frames of a film of one full rotation; needs ffmpeg");
+  command->add_option(
+      "--frames", arguments->frames,
+      "number of frames of a film, of one full rotation or of --path; needs ffmpeg");
   command->add_option("--exposure", arguments->exposure,
                       "exposure of the PNG in stops [bright parts just below white]");
   command->add_option(
       "--truth", arguments->truth,
       "a picture rendered directly under the environment, to compute the PSNR against");
+  AddRunOptions(*command, *arguments);
   AddLightsOption(*command, arguments->olat);
   AddInputEncodingOption(*command, arguments->olat.encoding,
                          "of the images: srgb, linear, or auto: 8-bit images as srgb, others as "
@@ -201,6 +247,9 @@ void AddRelightCommand(CLI::App& app) {
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->footer(
       "Examples:\n"
+      "  nerf materials runs/chair                           finds the materials of a run\n"
+      "  nerf relight runs/chair --environment venice_sunset_1k.hdr\n"
+      "  nerf relight runs/chair --environment D65 --path orbit --frames 72\n"
       "  nerf sample stage --light-stage 256                 makes such a capture\n"
       "  nerf relight stage --environment venice_sunset_1k.hdr\n"
       "  nerf relight stage --environment venice_sunset_1k.hdr --frames 72\n"

@@ -184,6 +184,14 @@ void TrainingDisplay::Show(const SurfacesRendered& event) {
   if (event.done == event.views) progress_.reset();
 }
 
+void TrainingDisplay::Show(const MaterialsStepped& event) {
+  constexpr std::int64_t kParts = 1000;
+  if (!progress_) progress_.emplace("finding materials", kParts);
+  if (!ProgressLine::IsTerminal()) return;
+  progress_->Update(std::llround(std::min(1.0, event.fraction) * kParts),
+                    fmt::format("step {}  {:.2f} dB", event.step, event.psnr));
+}
+
 void TrainingDisplay::Show(const GaussiansStepped& event) {
   constexpr std::int64_t kParts = 1000;
   if (!progress_) progress_.emplace("fitting Gaussians", kParts);

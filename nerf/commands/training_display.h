@@ -37,6 +37,7 @@ class TrainingDisplay {
   void Show(const TrainingEnded& event);
   void Show(const TrainerEvent& event);
   void Show(const SurfacesRendered& event);
+  void Show(const MaterialsStepped& event);
   void Show(const GaussiansStepped& event);
   void Show(const RepresentationDecided& event);
   void Show(const GaussiansFailed& event);

@@ -6,6 +6,7 @@ namespace nerf {
 
 // How materials and light are found (nerf/train/material_fit.h).
 struct MaterialOptions {
+  int surface_resolution = 160;
   int directions = 512;
   int points = 1024;
   double rate = 5e-3;
@@ -19,6 +20,8 @@ struct MaterialOptions {
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
+    option("surface_resolution", o.surface_resolution, "cells", Between(16, 1024),
+           "along the longest side of what is opaque");
     option("directions", o.directions, "", Between(16, 1 << 14), "from which light arrives");
     option("points", o.points, "of a step", Between(1, 1 << 20), "pixels that are shaded");
     option("rate", o.rate, "", AtLeast(0), "learning rate of the material field");

@@ -21,6 +21,8 @@ fs::path PointsPath(const fs::path& run) { return run / "points"; }
 fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
 fs::path GaussiansPath(const fs::path& run) { return run / "splats.nerf"; }
 fs::path RepresentationPath(const fs::path& run) { return run / "representation.json"; }
+fs::path MaterialsPath(const fs::path& run) { return run / "materials.nerf"; }
+fs::path EnvironmentPath(const fs::path& run) { return run / "environment.exr"; }
 
 std::shared_ptr<const GaussianModel> OpenGaussians(const fs::path& run) {
   if (!fs::exists(GaussiansPath(run))) {

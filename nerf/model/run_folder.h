@@ -18,6 +18,8 @@ namespace nerf {
 //   colmap/                  COLMAP's files, if poses were found from photographs
 //   splats.nerf              Gaussians, if training or nerf splat made them
 //   representation.json      which of the two is better, and how that was decided
+//   materials.nerf           surface, materials and light, if nerf materials found them
+//   environment.exr          that light
 //   points/                  the same, if sparse points were found for poses that were given
 //   picture.png              a photograph and its rendering, at the end of training
 //   refined_transforms.json  refined poses, with pose_refinement
@@ -34,6 +36,8 @@ std::filesystem::path PointsPath(const std::filesystem::path& run);
 std::filesystem::path SparsePath(const std::filesystem::path& run);
 std::filesystem::path GaussiansPath(const std::filesystem::path& run);
 std::filesystem::path RepresentationPath(const std::filesystem::path& run);
+std::filesystem::path MaterialsPath(const std::filesystem::path& run);
+std::filesystem::path EnvironmentPath(const std::filesystem::path& run);
 
 // A trained run, for rendering and evaluation.
 struct OpenedRun {

@@ -138,12 +138,19 @@ struct GaussiansEnded {
   std::optional<ComparedPsnr> reached;
 };
 
+// Materials.
+struct MaterialsStepped {
+  std::int64_t step = 0;
+  double fraction = 0;  // of the fit
+  double psnr = 0;      // dB, of the pixels of the last steps
+};
+
 using PipelineEvent =
     std::variant<Warning, WaitEstimated, FilmRead, PosesFound, PointsFound, ResolutionChosen,
                  InspectionProgress, CaptureInspected, DataPlanned, VerdictReached, EffectsTried,
                  EffectsUndecided, BudgetPlanned, TrainingBegan, TrainerEvent, PosesRefined,
                  TrainingEnded, SurfacesRendered, GaussiansStepped, RepresentationDecided,
-                 GaussiansFailed, GaussiansEnded>;
+                 GaussiansFailed, GaussiansEnded, MaterialsStepped>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // A listener that ignores all events.

@@ -17,11 +17,12 @@ namespace {
 // The least part of a trial that is fitted, however long the surfaces took.
 constexpr double kLeastFit = 0.5;
 // At so few pixels and Gaussians a second of fitting reaches what a minute reaches in full.
-constexpr int kLongestSide = 160;  // pixels
+constexpr int kLongestSideOfTrial = 160;  // pixels
 constexpr int kFewerGaussians = 8;
 constexpr double kHalfResolution = 0.3;
-// dB. Until the end a field gains 1.5 to 3 dB more than Gaussians do (fox, chair, sample; 60 and 120
-// s). Captures on which Gaussians end ahead were ahead by 2.6 dB or more here, others by 1.4 or less.
+// dB. Until the end a field gains 1.5 to 3 dB more than Gaussians do (fox, chair, sample; 60 and
+// 120 s). Captures on which Gaussians end ahead were ahead by 2.6 dB or more here, others by 1.4 or
+// less.
 constexpr double kPromise = 1.5;
 
 // The scene at a resolution at which a trial is short.
@@ -30,7 +31,7 @@ GaussianScene ReducedScene(const Model& field, const Dataset& data) {
   int halvings = 0;
   for (const TargetView& view : scene.train) {
     const int side = std::max(view.camera.width, view.camera.height);
-    while (side >> halvings > kLongestSide) ++halvings;
+    while (side >> halvings > kLongestSideOfTrial) ++halvings;
   }
   for (auto* views : {&scene.train, &scene.validation}) {
     for (TargetView& view : *views) {

@@ -1,8 +1,10 @@
 #include "nerf/relight/environment_light.h"
 
+#include <numbers>
 #include <vector>
 
 #include "nerf/base/parallel.h"
+#include "nerf/relight/light_transport.h"
 
 namespace nerf {
 
@@ -12,6 +14,34 @@ Eigen::Matrix3d MapFromZUpWorld() {
       0, 0, 1,                 //
       -1, 0, 0;
   return map_from_world;
+}
+
+Eigen::Matrix3d MapFromFrame(const Eigen::Matrix3d& frame_from_input) {
+  constexpr double kUpright = 0.94;  // cosine of 20 degrees
+  if (frame_from_input(2, 2) < kUpright) return MapFromZUpWorld();
+  return MapFromZUpWorld() * frame_from_input.transpose();
+}
+
+Image EnvironmentImage(const torch::Tensor& radiance, int height,
+                       const Eigen::Matrix3d& map_from_directions) {
+  const std::int64_t count = radiance.size(0);
+  const torch::Tensor directions = LightDirections(static_cast<int>(count));
+  // Weights that fall to a third at the distance of neighbouring directions.
+  const double sharpness = static_cast<double>(count) / (4 * std::numbers::pi) * 2;
+  Image image(2 * height, height, 3, ColorEncoding::kLinear);
+  const EnvironmentMap axes(Image(2 * height, height, 3, ColorEncoding::kLinear), "");
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < 2 * height; ++x) {
+      const Eigen::Vector3f towards =
+          (map_from_directions.transpose() * axes.Direction(x, y)).cast<float>();
+      const torch::Tensor cosine =
+          torch::matmul(directions, torch::tensor({towards.x(), towards.y(), towards.z()}));
+      const torch::Tensor weight = torch::softmax(sharpness * cosine, 0);
+      const torch::Tensor sum = torch::matmul(weight, radiance.detach());
+      for (int c = 0; c < 3; ++c) image.At(x, y)[c] = sum[c].item<float>();
+    }
+  }
+  return image;
 }
 
 torch::Tensor RadianceFrom(const EnvironmentMap& map, const torch::Tensor& directions,

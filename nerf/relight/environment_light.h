@@ -12,6 +12,16 @@ namespace nerf {
 // azimuth a about z, counter-clockwise from +x, is at u = 1/2 - a / (2 pi).
 Eigen::Matrix3d MapFromZUpWorld();
 
+// The same from the axes of a frame that is turned against an input by `frame_from_input`, of which
+// z is about up. If z of the input is up as well, within 20 degrees, the input's azimuth counts;
+// otherwise, as in a reconstruction from photographs, that of the frame.
+Eigen::Matrix3d MapFromFrame(const Eigen::Matrix3d& frame_from_input);
+
+// A map of 2 height x height pixels, in between the directions of a light.
+//   radiance  [D,3] from LightDirections(D)
+Image EnvironmentImage(const torch::Tensor& radiance, int height,
+                       const Eigen::Matrix3d& map_from_directions);
+
 // The radiance of a map from each of the directions: the mean over what is nearer to it than to the
 // others, so that small lamps are not lost and the total power is kept.
 //   directions          [D,3] float, unit, spread over the sphere

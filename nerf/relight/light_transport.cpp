@@ -15,14 +15,22 @@ constexpr float kBelowHorizon = 0.3f;
 
 }  // namespace
 
+torch::Tensor LightDirections(int directions) {
+  torch::Tensor rows = torch::empty({directions, 3});
+  for (int d = 0; d < directions; ++d) {
+    const Eigen::Vector3f direction = FibonacciDirection(d, directions).cast<float>();
+    std::copy_n(direction.data(), 3, rows.data_ptr<float>() + 3 * d);
+  }
+  return rows;
+}
+
 LightTransport TraceLight(const Mesh& surface, const MeshRays& rays, int directions, float offset) {
   const auto vertices = static_cast<std::int64_t>(surface.vertices.size());
   LightTransport transport;
-  transport.directions = torch::empty({directions, 3});
+  transport.directions = LightDirections(directions);
   std::vector<Eigen::Vector3f> towards;
   for (int d = 0; d < directions; ++d) {
-    towards.push_back(FibonacciDirection(d, directions).cast<float>());
-    std::copy_n(towards.back().data(), 3, transport.directions.data_ptr<float>() + 3 * d);
+    towards.emplace_back(transport.directions.data_ptr<float>() + 3 * d);
   }
   transport.blocker = torch::full({vertices, directions}, LightTransport::kOpen, torch::kInt);
   std::int32_t* const blocker = transport.blocker.data_ptr<std::int32_t>();

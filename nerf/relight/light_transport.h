@@ -14,10 +14,13 @@ struct LightTransport {
   // Of a direction from which the environment reaches a vertex.
   static constexpr std::int32_t kOpen = -1;
 
-  torch::Tensor directions;  // [D,3] unit, spread evenly over the sphere
+  torch::Tensor directions;  // [D,3], LightDirections
   // [V,D] int32: the vertex at which a ray of vertex v in a direction ends, or kOpen.
   torch::Tensor blocker;
 };
+
+// [D,3] unit, spread evenly over the sphere.
+torch::Tensor LightDirections(int directions);
 
 // Rays begin at a distance `offset` before a vertex, along its normal, so that the surface does not
 // shadow itself where it is slightly uneven. Directions well below the horizon of a vertex, and all

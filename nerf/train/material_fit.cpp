@@ -48,12 +48,6 @@ struct MaterialFit::Batch {
   torch::Tensor position, normal, to_camera, radiance, vertex, close_by;
 };
 
-torch::Tensor ShadingNormals(const torch::Tensor& normal, const torch::Tensor& offset,
-                             double most_offset) {
-  const torch::Tensor turned = normal + most_offset * offset;
-  return turned / turned.norm(2, 1, true).clamp_min(1e-6);
-}
-
 MaterialFit::MaterialFit(SurfaceObservations observations, LightTransport transport,
                          std::shared_ptr<MaterialField> field, const MaterialOptions& options,
                          std::uint64_t seed, const torch::Tensor& known_light)

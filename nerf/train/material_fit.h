@@ -7,6 +7,7 @@
 #include "nerf/config/material_options.h"
 #include "nerf/relight/light_transport.h"
 #include "nerf/relight/material_field.h"
+#include "nerf/relight/relightable_surface.h"
 #include "nerf/relight/surface_observations.h"
 #include "nerf/train/optimizer.h"
 
@@ -59,9 +60,5 @@ class MaterialFit {
   std::optional<Adam> light_optimizer_;
   std::int64_t step_ = 0;
 };
-
-// The normals that are shaded: those of the surface, turned by the offsets of the material field.
-torch::Tensor ShadingNormals(const torch::Tensor& normal, const torch::Tensor& offset,
-                             double most_offset);
 
 }  // namespace nerf

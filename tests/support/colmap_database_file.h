@@ -1,6 +1,7 @@
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <filesystem>
 #include <string>
@@ -34,12 +35,13 @@ inline void WriteColmapDatabase(const std::filesystem::path& path,
       "NULL, cols INTEGER NOT NULL, data BLOB, config INTEGER NOT NULL, F BLOB, E BLOB, H BLOB, "
       "qvec BLOB, tvec BLOB)");
   for (const char* table : {"keypoints", "descriptors"}) {
-    database.exec("CREATE TABLE " + std::string(table) +
-                  " (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB)");
+    database.exec(fmt::format(
+        "CREATE TABLE {} (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB)",
+        table));
   }
   const auto insert = [&](const char* table, int image, int rows, int columns, const void* data,
                           std::size_t bytes) {
-    SQLite::Statement row(database, "INSERT INTO " + std::string(table) + " VALUES (?, ?, ?, ?)");
+    SQLite::Statement row(database, fmt::format("INSERT INTO {} VALUES (?, ?, ?, ?)", table));
     row.bind(1, image);
     row.bind(2, rows);
     row.bind(3, columns);
