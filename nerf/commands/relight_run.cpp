@@ -124,7 +124,9 @@ void RelightRun(const RelightRunArguments& arguments, const EnvironmentMap& map)
     progress.Update(++done, shot.name);
   }
   progress.Finish();
-  if (list.frames_per_second) {
+  if (list.frames_per_second && !FfmpegIsInstalled()) {
+    fmt::print("no film.mp4, which needs the program ffmpeg\n");
+  } else if (list.frames_per_second) {
     WriteVideo(folder, static_cast<int>(list.shots.size()), *list.frames_per_second,
                folder / "film.mp4");
   }
