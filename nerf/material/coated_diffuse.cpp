@@ -78,22 +78,13 @@ double CoatedDiffuse::CoatProbability(double n_dot_v) const {
 
 std::optional<BrdfSample> CoatedDiffuse::Sample(const Vector3d& w_o,
                                                 const Eigen::Array3d& u) const {
-  if (w_o.z() <= 0) return std::nullopt;
-  Vector3d w_i;
-  if (u.z() < CoatProbability(w_o.z())) {
-    const Vector3d h = facets_.SampleVisibleNormal(w_o, u.head<2>());
-    w_i = (2 * w_o.dot(h) * h - w_o).normalized();
-  } else {
-    w_i = CosineOnHemisphere(u.head<2>());
-  }
-  if (w_i.z() <= 0) return std::nullopt;
-  return BrdfSample{w_i, Eval(w_o, w_i), Pdf(w_o, w_i)};
+  const auto w_i = FacetsOverBase{facets_, CoatProbability(w_o.z())}.Sample(w_o, u);
+  if (!w_i) return std::nullopt;
+  return BrdfSample{*w_i, Eval(w_o, *w_i), Pdf(w_o, *w_i)};
 }
 
 double CoatedDiffuse::Pdf(const Vector3d& w_o, const Vector3d& w_i) const {
-  if (w_o.z() <= 0 || w_i.z() <= 0) return 0;
-  const double coat = CoatProbability(w_o.z());
-  return coat * facets_.MirroredPdf(w_o, w_i) + (1 - coat) * w_i.z() / std::numbers::pi;
+  return FacetsOverBase{facets_, CoatProbability(w_o.z())}.Pdf(w_o, w_i);
 }
 
 }  // namespace nerf

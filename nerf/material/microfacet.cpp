@@ -54,6 +54,25 @@ double Ggx::MirroredPdf(const Vector3d& w_o, const Vector3d& w_i) const {
   return Masking(w_o.z()) * NormalDensity(h) / (4 * w_o.z());
 }
 
+std::optional<Vector3d> FacetsOverBase::Sample(const Vector3d& w_o, const Eigen::Array3d& u) const {
+  if (w_o.z() <= 0) return std::nullopt;
+  Vector3d w_i;
+  if (u.z() < probability) {
+    const Vector3d h = facets.SampleVisibleNormal(w_o, u.head<2>());
+    w_i = (2 * w_o.dot(h) * h - w_o).normalized();
+  } else {
+    w_i = CosineOnHemisphere(u.head<2>());
+  }
+  if (w_i.z() <= 0) return std::nullopt;
+  return w_i;
+}
+
+double FacetsOverBase::Pdf(const Vector3d& w_o, const Vector3d& w_i) const {
+  if (w_o.z() <= 0 || w_i.z() <= 0) return 0;
+  return probability * facets.MirroredPdf(w_o, w_i) +
+         (1 - probability) * w_i.z() / std::numbers::pi;
+}
+
 Color SchlickFresnel(const Color& F0, double cosine) {
   const double m = 1 - std::clamp(cosine, 0.0, 1.0);
   return F0 + (1 - F0) * (m * m * m * m * m);

@@ -32,6 +32,18 @@ class Ggx {
   double alpha_;
 };
 
+// Directions of light for a coated base: with this probability mirrored at a visible facet, else
+// cosine-weighted.
+struct FacetsOverBase {
+  const Ggx& facets;
+  double probability;  // of the facets, in [0,1]
+
+  // A direction above the surface; nullopt: it is below, which counts as a sample of 0.
+  std::optional<Eigen::Vector3d> Sample(const Eigen::Vector3d& w_o, const Eigen::Array3d& u) const;
+  // The density of Sample, 1 / sr.
+  double Pdf(const Eigen::Vector3d& w_o, const Eigen::Vector3d& w_i) const;
+};
+
 // F = F0 + (1 - F0) (1 - cos)^5. Source: Schlick 1994.
 Color SchlickFresnel(const Color& F0, double cosine);
 
