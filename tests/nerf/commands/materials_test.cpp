@@ -6,8 +6,7 @@
 #include <string>
 
 #include "nerf/image/image_io.h"
-#include "tests/nerf/commands/run_program.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/nerf/commands/small_run.h"
 
 namespace nerf {
 namespace {
@@ -16,30 +15,13 @@ namespace fs = std::filesystem;
 using test::RunNerf;
 using testing::HasSubstr;
 
-// A field of a small generated capture, trained until it has surfaces, and its materials.
-class MaterialsCommand : public testing::Test {
+class MaterialsCommand : public test::SmallRun {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = new test::ScratchFolder;
-    const auto made =
-        RunNerf("sample " + Path("sample") + " --views 20 --width 64 --height 48 --samples 1");
-    ASSERT_EQ(made.exit_status, 0) << made.output;
-    const auto trained =
-        RunNerf("train " + Path("sample/truth/sparse") + " -o " + Path("run") +
-                " --threads 2 --config fast --set train.steps=150 --effects config "
-                "--representation field");
-    ASSERT_EQ(trained.exit_status, 0) << trained.output;
-  }
-  static void TearDownTestSuite() { delete folder_; }
-
-  static std::string Path(const std::string& name) { return (folder_->path() / name).string(); }
   static test::ProgramResult Materials(const std::string& flags = "") {
     return RunNerf("materials " + Path("run") +
                    " --steps 5 --threads 2 --set surface_resolution=40 --set directions=64 " +
                    flags);
   }
-
-  inline static test::ScratchFolder* folder_ = nullptr;
 };
 
 TEST_F(MaterialsCommand, FindsThemAndRelightsTheRun) {

@@ -8,8 +8,7 @@
 #include <string>
 
 #include "nerf/image/image_io.h"
-#include "tests/nerf/commands/run_program.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/nerf/commands/small_run.h"
 
 namespace nerf {
 namespace {
@@ -18,23 +17,8 @@ namespace fs = std::filesystem;
 using test::RunNerf;
 using testing::HasSubstr;
 
-// A field of a small generated capture, trained until it has surfaces.
-class SplatCommand : public testing::Test {
+class SplatCommand : public test::SmallRun {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = new test::ScratchFolder;
-    const auto made =
-        RunNerf("sample " + Path("sample") + " --views 20 --width 64 --height 48 --samples 1");
-    ASSERT_EQ(made.exit_status, 0) << made.output;
-    const auto trained =
-        RunNerf("train " + Path("sample/truth/sparse") + " -o " + Path("run") +
-                " --threads 2 --config fast --set train.steps=150 --effects config "
-                "--representation field");
-    ASSERT_EQ(trained.exit_status, 0) << trained.output;
-  }
-  static void TearDownTestSuite() { delete folder_; }
-
-  static std::string Path(const std::string& name) { return (folder_->path() / name).string(); }
   static test::ProgramResult Splat(const std::string& flags = "") {
     return RunNerf("splat " + Path("run") + " --set splats.count=3000 --set splats.steps=150 " +
                    flags);
@@ -48,8 +32,6 @@ class SplatCommand : public testing::Test {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
-
-  inline static test::ScratchFolder* folder_ = nullptr;
 };
 
 TEST_F(SplatCommand, MakesGaussiansThatEvalAndRenderDraw) {
