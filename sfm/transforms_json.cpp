@@ -43,6 +43,39 @@ ScaledPose ReadPose(const JsonFields& frame) {
   return scaled;
 }
 
+std::optional<Eigen::Vector3d> ReadVector(const JsonFields& frame, const char* key) {
+  const nlohmann::json* value = frame.Array(key);
+  if (value == nullptr) return std::nullopt;
+  Eigen::Vector3d vector;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (value->size() != 3 || !(*value)[k].is_number()) {
+      throw InputError("{} must be three numbers", frame.Where(key));
+    }
+    vector[static_cast<int>(k)] = (*value)[k].get<double>();
+  }
+  return vector;
+}
+
+NamedLight ReadLight(const JsonFields& frame) {
+  NamedLight light;
+  light.name = frame.String("light").value_or("");
+  light.direction = ReadVector(frame, "light_direction");
+  if (light.direction) {
+    if (light.direction->isZero() || !light.direction->allFinite()) {
+      throw InputError("{} is no direction; give the vector towards the light",
+                       frame.Where("light_direction"));
+    }
+    light.direction->normalize();
+  }
+  if (const auto irradiance = ReadVector(frame, "light_irradiance")) {
+    if (!(irradiance->minCoeff() >= 0) || !irradiance->allFinite()) {
+      throw InputError("{} must be finite and not negative", frame.Where("light_irradiance"));
+    }
+    light.irradiance = irradiance->array();
+  }
+  return light;
+}
+
 void RequireNew(std::map<std::string, std::size_t>& frame_of, const std::string& value,
                 std::size_t frame, const std::string& where) {
   const auto [earlier, is_new] = frame_of.emplace(value, frame);
@@ -109,6 +142,7 @@ class Reader {
       ++scaled_poses_;
       scale_ = scaled.scale;
     }
+    image.light = ReadLight(frame);
     if (const auto mask = frame.String("mask_path")) FindMask(file.parent_path() / *mask, image);
     // Already in an earlier file: train comes first, and a training image cannot be held out.
     if (!name_of_path_.emplace(path_in_file, name).second) return;

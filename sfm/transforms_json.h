@@ -23,6 +23,9 @@ enum class AbsentImages {
 //   - A scale that the axes of a pose have in common is taken out, and is in `warnings`.
 //   - Pixels are taken as stored, as COLMAP takes them, unless their size fits w and h only after
 //     rotation by EXIF, or our own key upright_by_exif is set.
+//   - A frame may name its light: "light" is that of all photographs under the same light;
+//     "light_direction" points to a single distant light in a dark room, and "light_irradiance" is
+//     its irradiance on a surface that faces it, by default pi (white then has the value 1).
 //   - Where the image is a scaled copy of w x h, the lens is scaled to it.
 // Sources: instant-ngp docs/nerf_dataset_tips.md; nerfstudio docs "Data conventions"; Mildenhall et
 // al. 2020 (Blender).

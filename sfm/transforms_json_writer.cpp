@@ -30,6 +30,14 @@ nlohmann::json JsonFromPose(const Eigen::Isometry3d& world_from_camera) {
   return rows;
 }
 
+void AddLight(const NamedLight& light, nlohmann::json& frame) {
+  const auto list = [](const auto& v) { return nlohmann::json{v[0], v[1], v[2]}; };
+  if (!light.name.empty()) frame["light"] = light.name;
+  if (!light.direction) return;
+  frame["light_direction"] = list(*light.direction);
+  frame["light_irradiance"] = list(light.irradiance);
+}
+
 const char* SplitListName(Split split) {
   switch (split) {
     case Split::kTrain:
@@ -63,6 +71,7 @@ void WriteTransformsJson(const PosedImages& posed, const fs::path& file) {
     // the size does not show a rotation that leaves it unchanged.
     if (image.name != frame["file_path"]) frame["source_name"] = image.name;
     if (image.upright_by_exif) frame["upright_by_exif"] = true;
+    AddLight(image.light, frame);
     if (const char* list = SplitListName(image.split)) lists[list].push_back(frame["file_path"]);
     frames.push_back(std::move(frame));
   }

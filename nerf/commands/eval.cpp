@@ -38,6 +38,8 @@ struct EvalArguments {
   std::optional<int> downscale;
   bool effects = false;
   int effects_steps = 500;
+  std::string truth, maps;
+  int bounces = 2;
   int threads = 0;
   bool json = false;
 };
@@ -66,6 +68,27 @@ void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const
     fmt::print("{}\n", result.dump(2));
   } else {
     PrintMeasurements(effects, arguments.effects_steps);
+  }
+}
+
+void EvaluateTruth(const OpenedRun& run, const EvalArguments& arguments, const fs::path& output) {
+  const TruthFolder truth = ReadTruthFolder(arguments.truth, arguments.maps);
+  std::optional<ProgressLine> progress;
+  const TruthComparison comparison =
+      CompareWithTruth(run, ReadMaterials(MaterialsPath(arguments.run)), truth, arguments.bounces,
+                       [&](std::size_t done, std::size_t of) {
+                         if (!progress) {
+                           progress.emplace("comparing", static_cast<std::int64_t>(of));
+                         }
+                         progress->Update(static_cast<std::int64_t>(done));
+                       });
+  progress.reset();
+  const nlohmann::json result = JsonFromComparison(comparison);
+  WriteFileAtomically(output / "truth.json", result.dump(2) + "\n");
+  if (arguments.json) {
+    fmt::print("{}\n", result.dump(2));
+  } else {
+    PrintComparison(comparison);
   }
 }
 
@@ -124,6 +147,10 @@ void RunEval(const EvalArguments& arguments) {
   const fs::path output =
       arguments.output.empty() ? fs::path(arguments.run) / "eval" : fs::path(arguments.output);
   MakeOutputFolder(output);
+  if (!arguments.truth.empty()) {
+    EvaluateTruth(run, arguments, output);
+    return;
+  }
   if (arguments.effects) {
     EvaluateEffects(run, arguments, output);
     return;
@@ -180,6 +207,14 @@ void AddEvalCommand(CLI::App& app) {
   command->add_option("--effects-steps", arguments->effects_steps, "steps of each short training")
       ->check(CLI::Range(10, 1000000))
       ->capture_default_str();
+  auto* truth = command->add_option("--truth", arguments->truth,
+                                    "instead: compare materials and relit views with the truth in "
+                                    "this folder (docs/relighting.md)");
+  command->add_option("--maps", arguments->maps, "folder of the maps of its lights")->needs(truth);
+  command->add_option("--bounces", arguments->bounces, "of relit views")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str()
+      ->needs(truth);
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
   command->add_flag("--json", arguments->json, "print JSON instead of the table");
   command->footer(
@@ -188,6 +223,7 @@ void AddEvalCommand(CLI::App& app) {
       "  nerf eval runs/fox\n"
       "  nerf eval runs/fox --with splats\n"
       "  nerf eval runs/fox --effects\n"
+      "  nerf eval runs/totem --truth data/totem\n"
       "  nerf eval runs/fox --split train --json");
   command->callback([arguments] { RunEval(*arguments); });
 }

@@ -101,4 +101,56 @@ void PrintMeasurements(const std::vector<EffectMeasurement>& all, int steps) {
   }
 }
 
+namespace {
+
+nlohmann::json JsonFromScores(const TruthScores& scores) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+  };
+  return {{"normal_degrees", number(scores.normal_degrees)},
+          {"albedo_psnr", number(scores.albedo_psnr)},
+          {"albedo_psnr_unscaled", number(scores.albedo_psnr_unscaled)},
+          {"albedo_scale", scores.scale},
+          {"roughness_error", number(scores.roughness_error)},
+          {"relit_psnr", scores.relit_psnr}};
+}
+
+void PrintRow(const std::string& name, const std::optional<double>& found,
+              const std::optional<double>& trivial) {
+  if (!found) return;
+  fmt::print("{:<34} {:>8.2f} {:>8}\n", name, *found,
+             trivial ? fmt::format("{:.2f}", *trivial) : "-");
+}
+
+}  // namespace
+
+nlohmann::json JsonFromComparison(const TruthComparison& comparison) {
+  return {{"views", comparison.views},
+          {"found", JsonFromScores(comparison.found)},
+          {"trivial", JsonFromScores(comparison.trivial)},
+          {"seconds_per_light", comparison.light_seconds},
+          {"seconds_per_view", comparison.view_seconds},
+          {"mask", "alpha of the truth"}};
+}
+
+void PrintComparison(const TruthComparison& comparison) {
+  const TruthScores &found = comparison.found, &trivial = comparison.trivial;
+  fmt::print("{:<34} {:>8} {:>8}\n", fmt::format("{} views", comparison.views), "found", "trivial");
+  PrintRow("normals, degrees", found.normal_degrees, trivial.normal_degrees);
+  PrintRow("albedo, dB", found.albedo_psnr, trivial.albedo_psnr);
+  PrintRow("albedo without its scale, dB", found.albedo_psnr_unscaled,
+           trivial.albedo_psnr_unscaled);
+  PrintRow("roughness, mean difference", found.roughness_error, trivial.roughness_error);
+  for (const auto& [light, psnr] : found.relit_psnr) {
+    PrintRow(fmt::format("relit by {}, dB", light), psnr, trivial.relit_psnr.at(light));
+  }
+  fmt::print(
+      "the albedo is scaled by {:.3f} {:.3f} {:.3f}, the medians of truth over what was found; the "
+      "mask is the alpha of the truth\n"
+      "trivial: normals of the field's density, its picture as the albedo and as the relit view\n"
+      "{:.1f} s for bounces under a light, {:.2f} s a view\n",
+      found.scale[0], found.scale[1], found.scale[2], comparison.light_seconds,
+      comparison.view_seconds);
+}
+
 }  // namespace nerf

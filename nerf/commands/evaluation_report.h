@@ -5,6 +5,7 @@
 
 #include "nerf/model/evaluation.h"
 #include "nerf/pipeline/effect_measurement.h"
+#include "nerf/pipeline/truth_comparison.h"
 
 namespace nerf {
 
@@ -17,5 +18,9 @@ void PrintEvaluation(const Evaluation& evaluation);
 //   steps  of each training
 nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& effects, int steps);
 void PrintMeasurements(const std::vector<EffectMeasurement>& effects, int steps);
+
+// The content of truth.json, and the same as a table.
+nlohmann::json JsonFromComparison(const TruthComparison& comparison);
+void PrintComparison(const TruthComparison& comparison);
 
 }  // namespace nerf

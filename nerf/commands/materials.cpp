@@ -13,7 +13,7 @@
 #include "nerf/commands/environment_option.h"
 #include "nerf/commands/threads.h"
 #include "nerf/commands/training_display.h"
-#include "nerf/config/options_json.h"
+#include "nerf/config/config.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/material_session.h"
 
@@ -21,35 +21,32 @@ namespace nerf {
 namespace {
 
 struct MaterialsArguments {
-  std::string environment;
+  std::string environment, lights, photographs;
+  double exposure = 0;  // stops
   std::vector<std::string> assignments;
+  std::optional<int> steps;
   MaterialRequest request;
   std::string run;
   int threads = 0;
 };
 
-// Applies "key=value" of --set.
-void Assign(const std::vector<std::string>& assignments, MaterialOptions& options) {
-  nlohmann::json json = JsonFromOptions(options);
+// With the keys of the block materials that --set gives, with or without its name.
+MaterialOptions OptionsOf(const std::vector<std::string>& assignments) {
+  std::vector<std::string> all = {"materials={}"};
   for (const std::string& assignment : assignments) {
-    const std::size_t at = assignment.find('=');
-    const std::string key = assignment.substr(0, at);
-    if (at == std::string::npos || !json.contains(key)) {
-      throw InputError("--set {}: use KEY=VALUE; the keys are {}", assignment, [&] {
-        std::string keys;
-        for (const auto& item : json.items()) keys += (keys.empty() ? "" : ", ") + item.key();
-        return keys;
-      }());
-    }
-    const nlohmann::json value = nlohmann::json::parse(assignment.substr(at + 1), nullptr, false);
-    if (!value.is_number()) throw InputError("--set {}: use a number", assignment);
-    if (json[key].is_number_integer() && !value.is_number_integer()) {
-      throw InputError("--set {}: use a whole number", assignment);
-    }
-    json[key] = value;
+    all.push_back(assignment.starts_with("materials.") ? assignment : "materials." + assignment);
   }
-  OptionsFromJson(json, "materials.", options);
-  CheckRanges(options, "materials.");
+  return *LoadConfig("base", all).materials;
+}
+
+// The one light that --environment names; nullopt: none.
+std::optional<LightPlan> LightsOf(const MaterialsArguments& arguments) {
+  if (!arguments.lights.empty()) return ReadLightPlan(arguments.lights);
+  if (arguments.environment.empty()) return std::nullopt;
+  PlannedLight light;
+  light.environment = OpenEnvironment(arguments.environment);
+  light.exposure = arguments.exposure;
+  return LightPlan{{std::move(light)}, {}};
 }
 
 void RunMaterials(MaterialsArguments& arguments) {
@@ -57,29 +54,25 @@ void RunMaterials(MaterialsArguments& arguments) {
   UseThreads(arguments.threads);
   MaterialRequest& request = arguments.request;
   request.run = arguments.run;
-  Assign(arguments.assignments, request.options);
-  if (!arguments.environment.empty()) request.light = OpenEnvironment(arguments.environment);
+  request.photographs = arguments.photographs;
+  request.options = OptionsOf(arguments.assignments);
+  if (arguments.steps) request.options.steps = *arguments.steps;
+  request.lights = LightsOf(arguments);
   TrainingDisplay display;
-  const std::optional<MaterialSession> session = FindMaterials(
+  const std::optional<MaterialsFound> found = FindMaterials(
       request, watch, StopOnInterrupt(), [&](const PipelineEvent& event) { display(event); });
   display.Finish();
-  if (!session) {
+  if (!found) {
     fmt::print("stopped; nothing was written\n");
     return;
   }
-  const Materials& found = session->materials;
-  fmt::print("{}: a surface of {} vertices, {} steps, {:.2f} dB, {:.1f} s\n",
-             session->finished ? "found" : "stopped", found.surface.mesh.vertices.size(),
-             found.steps, session->psnr, watch.Seconds());
-  if (!request.light) {
-    fmt::print(
-        "the light is not known, so its brightness and that of the materials are relative: its "
-        "mean "
-        "is near white\n");
+  display(*found);
+  if (!found->finished) {
+    fmt::print("continue with: nerf materials --resume {}\n", arguments.run);
+    return;
   }
-  fmt::print("{}\n{}\nnext: nerf relight {} --environment MAP\n",
-             MaterialsPath(request.run).string(), EnvironmentPath(request.run).string(),
-             arguments.run);
+  fmt::print("{}, {:.1f} s in all\nnext: nerf relight {} --environment MAP\n",
+             MaterialsPath(request.run).string(), watch.Seconds(), arguments.run);
 }
 
 }  // namespace
@@ -96,29 +89,43 @@ void AddMaterialsCommand(CLI::App& app) {
       ->transform(
           CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))
       ->check(CLI::Range(1.0, 30.0 * 24 * 3600));
-  command->add_option("--steps", request.steps, "of the fit, without a time budget")
-      ->check(CLI::Range(1, 1 << 24))
-      ->capture_default_str();
+  command
+      ->add_option("--steps", arguments->steps,
+                   "of the fit, without a time budget [materials.steps]")
+      ->check(CLI::Range(1, 1 << 24));
   auto* environment = command->add_option(
       "--environment", arguments->environment,
       "the map of the light that shone on the scene [it is found]; a file, or a named light");
   command
-      ->add_option("--exposure", request.light_exposure,
+      ->add_option("--exposure", arguments->exposure,
                    "stops by which the photographs show this light brighter than the map")
       ->check(CLI::Range(-64.0, 64.0))
       ->capture_default_str()
       ->needs(environment);
   command
-      ->add_option("--set", arguments->assignments, "override a value: smoothness=0.02; repeatable")
+      ->add_option("--lights", arguments->lights,
+                   "a lights.json: environments, suns and points, and which photographs they "
+                   "shine on")
+      ->excludes(environment);
+  command->add_option("--photographs", arguments->photographs,
+                      "a transforms.json of other photographs, posed in the same world; its frames "
+                      "may name their lights [those of the run]");
+  command
+      ->add_option("--set", arguments->assignments,
+                   "change one key of the block materials: smoothness=0.02, specular=off; "
+                   "repeatable")
       ->allow_extra_args(false)
       ->take_all();
   command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
+  command->add_flag("--resume", request.resume, "continue a fit that was interrupted");
   command->footer(
       "Needs a subject that is opaque, in photographs of one exposure, which must still be there.\n"
       "The field stays as it is. Examples:\n"
       "  nerf materials runs/chair\n"
       "  nerf materials runs/chair --time-budget 5m\n"
       "  nerf materials runs/chair --environment venice_sunset_1k.hdr --exposure -0.67\n"
+      "  nerf materials runs/chair --lights lights.json\n"
+      "  nerf materials runs/chair --photographs stage/transforms.json\n"
       "  nerf relight runs/chair --environment studio_small_03_1k.hdr");
   command->callback([arguments] { RunMaterials(*arguments); });
 }

@@ -19,7 +19,9 @@ inline void AddLightsOption(CLI::App& command, OlatOptions& options) {
             options.light_file = value;
           },
           "directions of the lights: a file; chrome: from the highlights on a chrome ball; auto: "
-          "lights.txt, light_directions.txt or an .lp file if there is one, else the ball")
+          "lights.txt, light_directions.txt or an .lp file if there is one, else the ball; of a "
+          "run: "
+          "a lights.json")
       ->default_str("auto");
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
@@ -20,6 +21,7 @@
 #include "nerf/commands/input_encoding.h"
 #include "nerf/commands/olat_flags.h"
 #include "nerf/commands/relight_run.h"
+#include "nerf/commands/relight_run_flags.h"
 #include "nerf/commands/threads.h"
 #include "nerf/image/image_io.h"
 #include "nerf/image/image_metrics.h"
@@ -39,7 +41,7 @@ constexpr double kMaxUncovered = 0.001;  // of the power of the environment, wit
 struct RelightArguments {
   std::string capture;
   std::string output;
-  std::string environment;
+  std::vector<std::string> environments;
   OlatOptions olat;
   double rotate = 0;  // degrees
   int frames = 0;
@@ -47,9 +49,7 @@ struct RelightArguments {
   std::string truth;
   int memory_mb = 1024;
   int threads = 0;
-  // Of a run only.
-  ShotOptions shots;
-  std::optional<int> bounces;
+  RelightRunFlags of_run;
 
   void Check() const {
     if (frames < 0 || frames > 10'000) {
@@ -67,23 +67,27 @@ struct RelightArguments {
     }
     if (IsRun(capture)) {
       CheckForRun();
-    } else if (!shots.image.empty() || !shots.pose.empty() || !shots.path.empty() ||
-               shots.downscale || bounces) {
+      return;
+    }
+    if (of_run.UsesAny()) {
       throw InputError(
-          "{}: is no trained run; --image, --pose, --path, --downscale and --bounces are of runs",
+          "{}: is no trained run; --image, --pose, --path, --downscale, --bounces, --edit and "
+          "--background are of runs",
           capture);
     }
+    if (environments.size() != 1) throw InputError("give one --environment");
   }
 
   void CheckForRun() const {
-    if (!truth.empty() || olat.lights != LightCalibration::kAuto ||
+    if (!truth.empty() || olat.lights == LightCalibration::kChromeBall ||
         olat.encoding != InputEncoding::kAuto) {
       throw InputError(
-          "{}: is a trained run; --truth, --lights and --encoding are of light-stage captures",
+          "{}: is a trained run; --truth, --lights chrome and --encoding are of light-stage "
+          "captures",
           capture);
     }
-    if (frames > 0 && shots.path.empty()) {
-      throw InputError("--frames of a run is the number of poses of --path: give --path");
+    if (environments.empty() && olat.lights != LightCalibration::kFile) {
+      throw InputError("give --environment, or --lights with a lights.json");
     }
   }
 };
@@ -122,9 +126,32 @@ std::vector<std::vector<Color>> WeightsOfFrames(const RelightArguments& argument
     spdlog::warn(
         "{}{:.1f} % of the light of {} comes from directions without a light in the capture and is "
         "left out",
-        frames > 1 ? "up to " : "", 100 * uncovered, arguments.environment);
+        frames > 1 ? "up to " : "", 100 * uncovered, arguments.environments.front());
   }
   return weights;
+}
+
+RelightRunArguments ForRun(const RelightArguments& arguments) {
+  const RelightRunFlags& flags = arguments.of_run;
+  RelightRunArguments of_run;
+  of_run.run = arguments.capture;
+  of_run.output = arguments.output;
+  of_run.environments = arguments.environments;
+  if (arguments.olat.lights == LightCalibration::kFile) {
+    of_run.lights = arguments.olat.light_file.string();
+  }
+  of_run.edit = flags.edit;
+  of_run.rotate = arguments.rotate;
+  of_run.exposure = arguments.exposure;
+  of_run.bounces = flags.bounces.value_or(of_run.bounces);
+  of_run.shows_map = flags.background == "map";
+  of_run.shots = flags.shots;
+  if (arguments.frames > 0 && flags.shots.path.empty()) {
+    of_run.turning_frames = arguments.frames;
+  } else if (arguments.frames > 0) {
+    of_run.shots.frames = arguments.frames;
+  }
+  return of_run;
 }
 
 void RunRelight(const RelightArguments& arguments) {
@@ -132,11 +159,7 @@ void RunRelight(const RelightArguments& arguments) {
   arguments.Check();
   UseThreads(arguments.threads);
   if (IsRun(arguments.capture)) {
-    RelightRunArguments of_run{arguments.capture, arguments.output,   arguments.environment,
-                               arguments.rotate,  arguments.exposure, arguments.bounces.value_or(2),
-                               arguments.shots};
-    if (arguments.frames > 0) of_run.shots.frames = arguments.frames;
-    RelightRun(of_run, OpenEnvironment(arguments.environment));
+    RelightRun(ForRun(arguments));
     return;
   }
   const auto& stop = StopOnInterrupt();
@@ -145,7 +168,7 @@ void RunRelight(const RelightArguments& arguments) {
   CheckOutputFolder(capture, folder);
   std::optional<Image> truth;
   if (!arguments.truth.empty()) truth = OpenTruth(arguments.truth, capture);
-  const EnvironmentMap map = OpenEnvironment(arguments.environment);
+  const EnvironmentMap map = OpenEnvironment(arguments.environments.front());
   CheckNotBlack(capture, arguments.olat.encoding);
   const LightVoronoi cells(capture.lights,
                            CellRows(static_cast<int>(capture.lights.size()), map.height()));
@@ -186,27 +209,6 @@ void RunRelight(const RelightArguments& arguments) {
   if (psnr) fmt::print("PSNR {:.2f} dB against {}\n", *psnr, arguments.truth);
 }
 
-void AddRunOptions(CLI::App& command, RelightArguments& arguments) {
-  auto* image = command.add_option("--image", arguments.shots.image,
-                                   "of a run: the view of this photograph [held-out ones]");
-  auto* pose =
-      command.add_option("--pose", arguments.shots.pose, "of a run: the view of this JSON file")
-          ->excludes(image);
-  command
-      .add_option("--path", arguments.shots.path,
-                  "of a run: orbit, spiral, training, or a JSON file")
-      ->excludes(image)
-      ->excludes(pose);
-  command
-      .add_option("--downscale", arguments.shots.downscale,
-                  "of a run: reduce the resolution by this factor")
-      ->check(CLI::Range(1, 1024));
-  command
-      .add_option("--bounces", arguments.bounces,
-                  "of a run: how often light is reflected before it is seen [2]")
-      ->check(CLI::Range(0, 64));
-}
-
 }  // namespace
 
 void AddRelightCommand(CLI::App& app) {
@@ -220,9 +222,12 @@ void AddRelightCommand(CLI::App& app) {
       ->required();
   command
       ->add_option(
-          "--environment", arguments->environment,
-          std::string("an HDR or EXR map, twice as wide as high, or a named light: ") + kLightNames)
-      ->required();
+          "--environment", arguments->environments,
+          fmt::format("an HDR or EXR map, twice as wide as high, or a named light: {}; for a run "
+                      "there may be several",
+                      kLightNames))
+      ->allow_extra_args(false)
+      ->take_all();
   command->add_option("-o,--output", arguments->output,
                       "output folder [RUN/relit/MAP, or NAME-relit]");
   command
@@ -231,13 +236,14 @@ void AddRelightCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option(
       "--frames", arguments->frames,
-      "number of frames of a film, of one full rotation or of --path; needs ffmpeg");
+      "number of frames of a film, of one full rotation of the environment or of --path; needs "
+      "ffmpeg");
   command->add_option("--exposure", arguments->exposure,
                       "exposure of the PNG in stops [bright parts just below white]");
   command->add_option(
       "--truth", arguments->truth,
       "a picture rendered directly under the environment, to compute the PSNR against");
-  AddRunOptions(*command, *arguments);
+  AddRelightRunFlags(*command, arguments->of_run);
   AddLightsOption(*command, arguments->olat);
   AddInputEncodingOption(*command, arguments->olat.encoding,
                          "of the images: srgb, linear, or auto: 8-bit images as srgb, others as "
@@ -250,6 +256,9 @@ void AddRelightCommand(CLI::App& app) {
       "  nerf materials runs/chair                           finds the materials of a run\n"
       "  nerf relight runs/chair --environment venice_sunset_1k.hdr\n"
       "  nerf relight runs/chair --environment D65 --path orbit --frames 72\n"
+      "  nerf relight runs/chair --environment sky.hdr --image r_5.png --frames 72 --background "
+      "map\n"
+      "  nerf relight runs/chair --lights lights.json --edit edits.json\n"
       "  nerf sample stage --light-stage 256                 makes such a capture\n"
       "  nerf relight stage --environment venice_sunset_1k.hdr\n"
       "  nerf relight stage --environment venice_sunset_1k.hdr --frames 72\n"

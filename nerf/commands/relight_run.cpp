@@ -3,138 +3,184 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include "nerf/base/atomic_file.h"
+#include "nerf/base/input_error.h"
 #include "nerf/base/interrupt.h"
 #include "nerf/base/progress.h"
 #include "nerf/base/stopwatch.h"
-#include "nerf/capture/relight.h"
+#include "nerf/commands/environment_option.h"
+#include "nerf/commands/relit_pictures.h"
 #include "nerf/image/image_io.h"
+#include "nerf/light/light_plan.h"
 #include "nerf/model/materials_file.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/output/video.h"
+#include "nerf/pipeline/photograph_lights.h"
 #include "nerf/relight/environment_light.h"
-#include "nerf/relight/relit_view.h"
 
 namespace nerf {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The directions of the normalized frame in the map, which is turned about the vertical axis,
-// counter-clockwise as seen from above.
-Eigen::Matrix3d TurnedMap(const SceneNormalization& frame, double degrees) {
-  const double angle = -degrees * std::numbers::pi / 180;
-  return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix() *
-         MapFromFrame(frame.rotation);
-}
+constexpr double kTurningFramesPerSecond = 24;
 
-// Linear, 4 channels: straight colour and opacity. What is not part of the surface stays as the
-// field shows it.
-Image RelitImage(const Relighter& relighter, const RenderedView& rendered, const DepthMap& depth,
-                 ColorEncoding encoding, bool has_alpha) {
-  Image image(depth.camera.width, depth.camera.height, 4, ColorEncoding::kLinear);
-  for (std::size_t p = 0; p < depth.opacity.pixels.size() && !has_alpha; ++p) {
-    for (int c = 0; c < 3; ++c) {
-      const float shown = rendered.rgb.pixels[3 * p + c];
-      image.pixels[4 * p + c] = encoding == ColorEncoding::kLinear ? shown : LinearFromSrgb(shown);
+std::vector<PlannedLight> LightsOf(const RelightRunArguments& arguments) {
+  std::vector<PlannedLight> lights;
+  if (!arguments.lights.empty()) lights = ReadLightPlan(arguments.lights).lights;
+  for (const std::string& name : arguments.environments) {
+    PlannedLight light;
+    light.name = fs::path(name).stem().string();
+    light.environment = OpenEnvironment(name);
+    lights.push_back(std::move(light));
+  }
+  for (PlannedLight& light : lights) {
+    if (light.has_unknown_environment) {
+      throw InputError("{}: the light {} has an unknown environment; give a map", arguments.lights,
+                       light.name);
     }
-    image.pixels[4 * p + 3] = 1;
+    light.rotate += arguments.rotate;
   }
-  const SeenSurface seen = relighter.See(depth);
-  const RelitPixels relit = relighter.Reflect(seen);
-  const torch::Tensor sum = (relit.direct + relit.indirect).contiguous();
-  for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
-    const auto p = static_cast<std::size_t>(seen.pixels[i]);
-    for (int c = 0; c < 3; ++c) image.pixels[4 * p + c] = sum.data_ptr<float>()[3 * i + c];
-    image.pixels[4 * p + 3] = has_alpha ? depth.opacity.pixels[p] : 1;
-  }
-  return image;
+  return lights;
 }
 
-// As nerf render shows it: before the display background, in sRGB.
-Image Displayed(const Image& linear, double stops, bool has_alpha) {
-  const Image exposed = WithExposure(linear, stops);
-  const Eigen::Vector3f background = DisplayBackground(has_alpha);
-  Image shown(linear.width, linear.height, 3);
-  for (std::size_t p = 0; p < shown.pixels.size() / 3; ++p) {
-    const float opacity = linear.pixels[4 * p + 3];
-    for (int c = 0; c < 3; ++c) {
-      const float value = std::clamp(exposed.pixels[4 * p + c], 0.0f, 1.0f);
-      shown.pixels[3 * p + c] = opacity * SrgbFromLinear(value) + (1 - opacity) * background[c];
+// Shows the views of a run, one light after the other.
+class Show {
+ public:
+  explicit Show(const RelightRunArguments& arguments)
+      : arguments_(arguments),
+        lights_(LightsOf(arguments)),
+        run_(OpenRun(arguments.run)),
+        scene_(run_.model->Scene()),
+        materials_(WithEdits()),
+        list_(ChooseShots(run_, arguments.shots, arguments.run)),
+        relighter_(materials_.surface),
+        stop_(StopOnInterrupt()) {
+    if (arguments.turning_frames > 0) list_.shots.resize(1);
+  }
+
+  void Run() {
+    const double prepared = watch_.Seconds();
+    const std::size_t of_light = arguments_.turning_frames > 0
+                                     ? static_cast<std::size_t>(arguments_.turning_frames)
+                                     : list_.shots.size();
+    progress_.emplace("relighting", static_cast<std::int64_t>(of_light * lights_.size()));
+    for (const PlannedLight& light : lights_) {
+      const fs::path folder = FolderOf(light);
+      MakeOutputFolder(folder);
+      if (arguments_.turning_frames > 0) {
+        Turn(light, folder);
+      } else {
+        Views(light, folder);
+      }
+    }
+    progress_.reset();
+    fmt::print(
+        "{} picture{}{}; {:.1f} s for shadows, {:.2f} s a picture\nPNG and linear EXR are in {}\n",
+        done_, done_ == 1 ? "" : "s",
+        lights_.size() == 1 ? fmt::format(" at {:+.2f} stops", stops_.value_or(0)) : "", prepared,
+        (watch_.Seconds() - prepared) / static_cast<double>(done_),
+        lights_.size() == 1 ? FolderOf(lights_[0]).string() : Root().string());
+  }
+
+ private:
+  Materials WithEdits() const {
+    Materials materials = ReadMaterials(MaterialsPath(arguments_.run));
+    if (!arguments_.edit.empty()) {
+      materials.surface.edits =
+          ReadMaterialEdits(arguments_.edit, run_.model->Scene().normalized_from_world,
+                            materials.surface.mesh.vertices);
+    }
+    return materials;
+  }
+
+  fs::path Root() const {
+    return arguments_.output.empty() ? fs::path(arguments_.run) / "relit"
+                                     : fs::path(arguments_.output);
+  }
+  fs::path FolderOf(const PlannedLight& light) const {
+    const bool is_only = lights_.size() == 1 && !arguments_.output.empty();
+    return is_only ? Root() : Root() / light.name;
+  }
+
+  RelitBackground BackgroundOf(const PlannedLight& light) const {
+    if (!arguments_.shows_map || !light.environment) return {};
+    return {&*light.environment, TurnedMap(scene_.normalized_from_world.rotation, light.rotate)};
+  }
+
+  void Shine(const PlannedLight& light) {
+    relighter_.SetLight(
+        LightInFrame(light, scene_.normalized_from_world, materials_.surface.Directions()),
+        arguments_.bounces);
+  }
+
+  // One picture.
+  void Write(const LookedAt& view, const PlannedLight& light, const fs::path& stem) {
+    if (stop_) {
+      progress_.reset();
+      fmt::print("stopped; the finished pictures are in {}\n", stem.parent_path().string());
+      throw CLI::RuntimeError(130);
+    }
+    const Image relit =
+        RelitImage(view, relighter_.Reflect(view.seen), scene_, BackgroundOf(light));
+    if (!stops_) stops_ = ExposureOf(relit);  // one for all pictures of a light
+    WriteImage(stem.string() + ".exr", relit);
+    WriteImage(stem.string() + ".png", Displayed(relit, *stops_, scene_.has_alpha));
+    progress_->Update(++done_, stem.filename().string());
+  }
+
+  void Views(const PlannedLight& light, const fs::path& folder) {
+    stops_ = arguments_.exposure;
+    Shine(light);
+    for (const Shot& shot : list_.shots) {
+      Write(LookAt(run_, relighter_, shot), light, folder / shot.name);
+    }
+    if (list_.frames_per_second) {
+      WriteFilm(folder, static_cast<int>(list_.shots.size()), *list_.frames_per_second);
     }
   }
-  return shown;
-}
 
-// Of the opaque pixels.
-double ExposureOf(const Image& linear) {
-  Image opaque(1, 0, 3, ColorEncoding::kLinear);
-  for (std::size_t p = 0; p < linear.pixels.size() / 4; ++p) {
-    if (linear.pixels[4 * p + 3] < 0.5f) continue;
-    for (int c = 0; c < 3; ++c) opaque.pixels.push_back(linear.pixels[4 * p + c]);
-    ++opaque.height;
+  // The first view, while the light turns once about the vertical axis.
+  void Turn(PlannedLight light, const fs::path& folder) {
+    stops_ = arguments_.exposure;
+    const LookedAt view = LookAt(run_, relighter_, list_.shots.front());
+    const double begin = light.rotate;
+    for (int frame = 0; frame < arguments_.turning_frames; ++frame) {
+      light.rotate = begin + 360.0 * frame / arguments_.turning_frames;
+      Shine(light);
+      Write(view, light, folder / fs::path(FrameName(frame)).stem());
+    }
+    WriteFilm(folder, arguments_.turning_frames, kTurningFramesPerSecond);
   }
-  return opaque.height > 0 ? AutoExposure(opaque) : 0;
-}
 
-fs::path OutputOf(const RelightRunArguments& arguments) {
-  if (!arguments.output.empty()) return arguments.output;
-  return fs::path(arguments.run) / "relit" / fs::path(arguments.environment).stem();
-}
+  void WriteFilm(const fs::path& folder, int frames, double frames_per_second) {
+    if (FfmpegIsInstalled()) {
+      WriteVideo(folder, frames, frames_per_second, folder / "film.mp4");
+    } else {
+      fmt::print("no film.mp4, which needs the program ffmpeg\n");
+    }
+  }
+
+  const RelightRunArguments& arguments_;
+  Stopwatch watch_;
+  std::vector<PlannedLight> lights_;
+  OpenedRun run_;
+  const SceneFacts& scene_;
+  Materials materials_;
+  ShotList list_;
+  Relighter relighter_;
+  const std::atomic<bool>& stop_;
+  std::optional<ProgressLine> progress_;
+  std::optional<double> stops_;
+  std::int64_t done_ = 0;
+};
 
 }  // namespace
 
 bool IsRun(const std::string& path) { return fs::exists(CheckpointPath(path)); }
 
-void RelightRun(const RelightRunArguments& arguments, const EnvironmentMap& map) {
-  const Stopwatch watch;
-  const OpenedRun run = OpenRun(arguments.run);
-  const Materials materials = ReadMaterials(MaterialsPath(arguments.run));
-  const SceneFacts& scene = run.model->Scene();
-  const ShotList list = ChooseShots(run, arguments.shots, arguments.run);
-  const fs::path folder = OutputOf(arguments);
-  MakeOutputFolder(folder);
-  Relighter relighter(materials.surface);
-  relighter.SetLight(RadianceFrom(map, relighter.Directions(),
-                                  TurnedMap(scene.normalized_from_world, arguments.rotate)),
-                     arguments.bounces);
-  const double prepared = watch.Seconds();
-  std::optional<double> stops = arguments.exposure;
-  ProgressLine progress("relighting", static_cast<std::int64_t>(list.shots.size()));
-  std::int64_t done = 0;
-  const auto& stop = StopOnInterrupt();
-  for (const Shot& shot : list.shots) {
-    if (stop) {
-      progress.Finish();
-      fmt::print("stopped; the finished pictures are in {}\n", folder.string());
-      throw CLI::RuntimeError(130);
-    }
-    const RenderedView rendered = run.model->Render({shot.camera, shot.world_from_camera});
-    const DepthMap depth{shot.camera,
-                         scene.normalized_from_world.NormalizedFromCamera(shot.world_from_camera),
-                         rendered.depth, rendered.opacity};
-    const Image relit = RelitImage(relighter, rendered, depth, scene.encoding, scene.has_alpha);
-    if (!stops) stops = ExposureOf(relit);  // one for all views
-    WriteImage(folder / (shot.name + ".exr"), relit);
-    WriteImage(folder / (shot.name + ".png"), Displayed(relit, *stops, scene.has_alpha));
-    progress.Update(++done, shot.name);
-  }
-  progress.Finish();
-  if (list.frames_per_second && !FfmpegIsInstalled()) {
-    fmt::print("no film.mp4, which needs the program ffmpeg\n");
-  } else if (list.frames_per_second) {
-    WriteVideo(folder, static_cast<int>(list.shots.size()), *list.frames_per_second,
-               folder / "film.mp4");
-  }
-  fmt::print(
-      "{} view{} at {:+.2f} stops; {:.1f} s for shadows and bounces, {:.2f} s a view\n"
-      "PNG and linear EXR are in {}\n",
-      done, done == 1 ? "" : "s", stops.value_or(0), prepared,
-      (watch.Seconds() - prepared) / static_cast<double>(done), folder.string());
-}
+void RelightRun(const RelightRunArguments& arguments) { Show(arguments).Run(); }
 
 }  // namespace nerf

@@ -12,6 +12,7 @@
 #include "nerf/base/atomic_file.h"
 #include "nerf/base/input_error.h"
 #include "nerf/base/progress.h"
+#include "nerf/commands/channel_run.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/model_choice.h"
 #include "nerf/commands/ply_scene.h"
@@ -39,6 +40,7 @@ struct RenderArguments {
   std::string with = "auto";
   std::optional<double> fps;
   ViewFiles files;
+  ChannelOptions channels;
   bool no_video = false;
   bool preview = false;
   double quality = 1;
@@ -78,7 +80,8 @@ double ChooseQuality(const OpenedRun& run, const Shot& shot, const RenderArgumen
     uses_splats = true;
     const std::string seconds = FormatSeconds(*arguments.seconds_per_frame);
     if (measured.seconds > *arguments.seconds_per_frame) {
-      fmt::print("no quality of the field takes at most {} a frame; Gaussians are drawn\n", seconds);
+      fmt::print("no quality of the field takes at most {} a frame; Gaussians are drawn\n",
+                 seconds);
     } else {
       fmt::print("at {} a frame the Gaussians are better than the field at quality {:.2f}\n",
                  seconds, measured.quality);
@@ -214,6 +217,11 @@ void RunRender(const RenderArguments& arguments) {
                           .translation(),
                       shot.name);
   }
+  if (!arguments.channels.channels.empty()) {
+    RenderChannels(run, arguments.run, arguments.channels, list, output);
+    fmt::print("{} views in {}\n", list.shots.size(), output.string());
+    return;
+  }
   RenderShots(run, uses_splats, list, arguments, output);
   fmt::print("{} views in {}\n", list.shots.size(), output.string());
   WriteFilm(list, arguments, output);
@@ -242,6 +250,7 @@ void AddRenderCommand(CLI::App& app) {
       "--downscale", arguments->shots.downscale,
       "reduce the resolution by this factor [as trained; 1 for --pose and a path file]");
   AddViewFiles(*command, arguments->files);
+  AddChannelOptions(*command, arguments->channels);
   command->add_flag("--preview", arguments->preview,
                     "write each image at coarse resolution first, then finer, then full");
   command->add_flag("--no-video", arguments->no_video, "do not make an MP4 of a path");
@@ -266,6 +275,7 @@ void AddRenderCommand(CLI::App& app) {
       "  nerf render runs/fox --path orbit --with splats\n"
       "  nerf render runs/fox --pose pose.json --format exr --depth\n"
       "  nerf render runs/fox --path camera_path.json -o film\n"
+      "  nerf render runs/mug --channel normal,albedo,roughness\n"
       "  nerf render scene.ply --pose pose.json -o views");
   command->callback([arguments] { RunRender(*arguments); });
 }

@@ -35,6 +35,8 @@ struct TrainArguments {
   std::optional<double> time_budget;  // seconds
   std::optional<double> target_psnr;  // dB
   int threads = 0;
+  bool materials = false;
+  std::string lights;
   bool resume = false;
   bool help_config = false;
 };
@@ -67,6 +69,7 @@ std::vector<std::string> AssignmentsOf(const TrainArguments& arguments) {
   if (arguments.time_budget) {
     assignments.push_back(fmt::format("train.time_budget={}", *arguments.time_budget));
   }
+  if (arguments.materials) assignments.push_back("materials={}");
   if (arguments.target_psnr) {
     assignments.push_back(fmt::format("train.target_psnr={}", *arguments.target_psnr));
   }
@@ -78,10 +81,12 @@ TrainingRequest RequestOf(const TrainArguments& arguments) {
   request.run = RunFolder(arguments);
   request.assignments = AssignmentsOf(arguments);
   if (arguments.resume) {
-    if (!request.assignments.empty() || arguments.preset_is_given || arguments.effects != "auto") {
+    if (!request.assignments.empty() || arguments.preset_is_given || arguments.effects != "auto" ||
+        !arguments.lights.empty()) {
       throw InputError(
           "--resume continues with the run's configuration; omit --config, --set, --effects, "
-          "--representation, --downscale, --frames, --time-budget and --target-psnr");
+          "--representation, --downscale, --frames, --materials, --lights, --time-budget and "
+          "--target-psnr");
     }
     return request;
   }
@@ -90,6 +95,7 @@ TrainingRequest RequestOf(const TrainArguments& arguments) {
   request.preset = arguments.preset;
   request.preset_is_given = arguments.preset_is_given;
   request.effects = ParseEffects(arguments.effects);
+  request.lights = arguments.lights;
   return request;
 }
 
@@ -111,6 +117,16 @@ void RunTrain(const TrainArguments& arguments) {
       arguments.resume ? TrainingSession::Resume(request.run, watch, listener)
                        : std::make_unique<TrainingSession>(std::move(request), watch, listener);
   session->Run(StopRequested());
+}
+
+void AddMaterialFlags(CLI::App& command, TrainArguments& arguments) {
+  auto* materials = command.add_flag(
+      "--materials", arguments.materials,
+      "then find the materials of the surface and the light on it (nerf materials)");
+  command
+      .add_option("--lights", arguments.lights,
+                  "a lights.json: what is known of the lights on the photographs")
+      ->needs(materials);
 }
 
 }  // namespace
@@ -138,6 +154,7 @@ void AddTrainCommand(CLI::App& app) {
                    "field: the neural field alone; splats: Gaussians as well, which begin at its "
                    "surfaces; auto: what a short trial says [auto]")
       ->check(CLI::IsMember({"auto", "field", "splats"}));
+  AddMaterialFlags(*command, *arguments);
   command->add_option("--downscale", arguments->downscale, "reduce photographs by this factor");
   command->add_option("--frames", arguments->frames,
                       "of a film: how many to use [three a second, 40 to 150]");
@@ -163,6 +180,7 @@ void AddTrainCommand(CLI::App& app) {
       "  nerf train photos/fox/transforms.json --time-budget 2m --target-psnr 30\n"
       "  nerf train photos/fox --effects +exposure,-view_dependence\n"
       "  nerf train clip.mp4 --frames 100\n"
+      "  nerf train photos/mug --materials --time-budget 10m\n"
       "  nerf train --resume -o runs/fox");
   command->callback([arguments, preset] {
     arguments->preset_is_given = preset->count() > 0;

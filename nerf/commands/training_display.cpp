@@ -192,6 +192,34 @@ void TrainingDisplay::Show(const MaterialsStepped& event) {
                     fmt::format("step {}  {:.2f} dB", event.step, event.psnr));
 }
 
+void TrainingDisplay::Show(const LightEffectsDecided& event) {
+  progress_.reset();
+  const auto state = [](bool on) { return on ? "on" : "off"; };
+  Print("light: shadows {}, bounces {}{}; specular {}{}\n", state(event.shadows),
+        state(event.bounces),
+        event.blocked
+            ? fmt::format(" ({:.1f} % of the directions are blocked)", 100 * *event.blocked)
+            : "",
+        state(event.specular),
+        event.specular_db ? fmt::format(" (a coat explains the photographs better by {:.2f} dB)",
+                                        *event.specular_db)
+                          : "");
+}
+
+void TrainingDisplay::Show(const MaterialsFound& event) {
+  progress_.reset();
+  Print(
+      "{} materials of a surface of {} vertices under {} light{}: {} steps in {:.1f} s, {:.2f} "
+      "dB\n",
+      event.finished ? "found" : "stopped, kept", event.vertices, event.lights,
+      event.lights == 1 ? "" : "s", event.steps, event.seconds, event.psnr);
+  if (event.is_relative) {
+    Print(
+        "a light is not known, so its brightness and that of the materials are relative: its mean "
+        "is near white\n");
+  }
+}
+
 void TrainingDisplay::Show(const GaussiansStepped& event) {
   constexpr std::int64_t kParts = 1000;
   if (!progress_) progress_.emplace("fitting Gaussians", kParts);

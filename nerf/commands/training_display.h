@@ -37,7 +37,9 @@ class TrainingDisplay {
   void Show(const TrainingEnded& event);
   void Show(const TrainerEvent& event);
   void Show(const SurfacesRendered& event);
+  void Show(const LightEffectsDecided& event);
   void Show(const MaterialsStepped& event);
+  void Show(const MaterialsFound& event);
   void Show(const GaussiansStepped& event);
   void Show(const RepresentationDecided& event);
   void Show(const GaussiansFailed& event);

@@ -16,15 +16,18 @@ namespace {
 
 constexpr char kParentKey[] = "parent";
 
-// All effects turned on, with their defaults.
-const json& EffectsWithDefaults() {
-  static const json all = [] {
+// The optional blocks with their defaults, by their keys.
+const json& OptionalBlocks() {
+  static const json blocks = [] {
     EffectsOptions effects;
     EffectsOptions::VisitEffects(effects,
                                  [](const EffectDescriptor&, auto& block) { block.emplace(); });
-    return JsonFromOptions(effects);
+    json all = {{"materials", JsonFromOptions(MaterialOptions())}};
+    const json of_effects = JsonFromOptions(effects);
+    for (const auto& item : of_effects.items()) all["effects." + item.key()] = item.value();
+    return all;
   }();
-  return all;
+  return blocks;
 }
 
 // Applies the parents of a preset or file, the outermost first, and then itself to `config`.
@@ -46,7 +49,7 @@ void ApplyPreset(json& config, const std::string& preset, std::set<std::string> 
     ApplyPreset(config, change[kParentKey], seen);
     change.erase(kParentKey);
   }
-  OverlayConfig(config, change, where, EffectsWithDefaults());
+  OverlayConfig(config, change, where, OptionalBlocks());
 }
 
 void CheckEncoding(const std::string& block, const kernels::HashGridOptions& o) {
@@ -97,6 +100,10 @@ Config Checked(const json& document, const std::string& where) {
 }
 
 }  // namespace
+
+double RadianceSeconds(const Config& config) {
+  return (config.materials ? 1 - config.materials->share : 1) * config.train.time_budget;
+}
 
 json JsonFromConfig(const Config& config) { return JsonFromOptions(config); }
 
@@ -149,7 +156,7 @@ bool GivesKey(const std::string& preset, const std::vector<std::string>& assignm
 
 Config ConfigFromJson(const json& document, const std::string& where) {
   json complete = JsonFromConfig(Config());
-  OverlayConfig(complete, document, where, EffectsWithDefaults());
+  OverlayConfig(complete, document, where, OptionalBlocks());
   return Checked(complete, where);
 }
 
@@ -157,8 +164,7 @@ Config LoadConfig(const std::string& preset, const std::vector<std::string>& ass
   json document = JsonFromConfig(Config());
   ApplyPreset(document, preset, {});
   for (const std::string& assignment : assignments) {
-    OverlayConfig(document, ParseAssignment(assignment), "--set " + assignment,
-                  EffectsWithDefaults());
+    OverlayConfig(document, ParseAssignment(assignment), "--set " + assignment, OptionalBlocks());
   }
   return Checked(document, "config " + preset);
 }

@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "nerf/config/field_options.h"
+#include "nerf/config/material_options.h"
 #include "nerf/config/options_json.h"
 #include "nerf/config/splat_options.h"
 #include "nerf/config/train_options.h"
@@ -36,6 +38,7 @@ struct Config {
   ScheduleOptions schedule;
   TrainOptions train;
   SplatOptions splats;
+  std::optional<MaterialOptions> materials;
 
   template <class Self, class Visitor>
   static void Options(Self& c, Visitor&& option) {
@@ -52,8 +55,12 @@ struct Config {
     option("schedule", c.schedule, "learning rate over the training");
     option("train", c.train, "length, batches, checkpoints");
     option("splats", c.splats, "Gaussians");
+    option("materials", c.materials, "materials and light of the surface; null: off");
   }
 };
+
+// Of a time budget, the seconds for the field and for Gaussians, before materials.
+double RadianceSeconds(const Config& config);
 
 // The text of each configs/*.json by preset name, compiled into the program.
 const std::map<std::string, std::string>& BuiltInPresets();

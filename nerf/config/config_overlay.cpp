@@ -42,22 +42,22 @@ std::string JoinKeys(const json& object) {
 }
 
 void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix,
-             const json& effects);
+             const json& optional);
 
-// An effect's block: null turns it off, an object turns it on and sets the keys it contains.
-void OverlayEffect(json& effect, const std::string& name, const json& change,
-                   const std::string& where, const json& effects) {
+// An optional block: null turns it off, an object turns it on and sets the keys it contains.
+void OverlayOptional(json& block, const std::string& key, const json& change,
+                     const std::string& where, const json& optional) {
   if (change.is_null()) {
-    effect = nullptr;
+    block = nullptr;
     return;
   }
-  if (effect.is_null()) effect = effects.at(name);
-  Overlay(effect, change, where, std::string(kEffectsBlock) + "." + name, effects);
+  if (block.is_null()) block = optional.at(key);
+  Overlay(block, change, where, key, optional);
 }
 
 // Applies `change` to `base`; each key must exist in `base` with a value of the same kind.
 void Overlay(json& base, const json& change, const std::string& where, const std::string& prefix,
-             const json& effects) {
+             const json& optional) {
   if (!change.is_object()) {
     throw InputError("{}: {} must be an object {{...}}", where,
                      prefix.empty() ? "the configuration" : prefix);
@@ -69,10 +69,10 @@ void Overlay(json& base, const json& change, const std::string& where, const std
       throw InputError("{}: unknown key {}; known here are {}", where, full, JoinKeys(base));
     }
     json& old = base[key];
-    if (prefix == kEffectsBlock) {
-      OverlayEffect(old, key, value, where, effects);
+    if (optional.contains(full)) {
+      OverlayOptional(old, full, value, where, optional);
     } else if (old.is_object()) {
-      Overlay(old, value, where, full, effects);
+      Overlay(old, value, where, full, optional);
     } else if (!SameKind(old, value)) {
       throw InputError("{}: {} must be {}, not {}", where, full, KindName(old),
                        value.dump(-1, ' ', false, json::error_handler_t::replace));
@@ -109,8 +109,8 @@ json ParseAssignment(const std::string& assignment) {
   return json{{path, value}};
 }
 
-void OverlayConfig(json& base, const json& change, const std::string& where, const json& effects) {
-  Overlay(base, change, where, "", effects);
+void OverlayConfig(json& base, const json& change, const std::string& where, const json& optional) {
+  Overlay(base, change, where, "", optional);
 }
 
 }  // namespace nerf

@@ -15,12 +15,13 @@ nlohmann::json ParseConfig(const std::string& text, const std::string& where);
 // Throws InputError where there is no key or no "=".
 nlohmann::json ParseAssignment(const std::string& assignment);
 
-// Applies `change` to `base`; each key must exist in `base` with a value of the same kind. Below
-// "effects", null turns an effect off, an object turns it on, and effects may have their old names.
-//   where    names the file in errors
-//   effects  the blocks of all effects with their defaults
+// Applies `change` to `base`; each key must exist in `base` with a value of the same kind. Optional
+// blocks, as those of effects, are turned off by null and on by an object. Effects may have their
+// old names.
+//   where     names the file in errors
+//   optional  these blocks with their defaults, by their keys: "effects.masks"
 // Throws InputError naming the key.
 void OverlayConfig(nlohmann::json& base, const nlohmann::json& change, const std::string& where,
-                   const nlohmann::json& effects);
+                   const nlohmann::json& optional);
 
 }  // namespace nerf

@@ -1,11 +1,31 @@
 #pragma once
 
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
 #include "nerf/base/options.h"
 
 namespace nerf {
 
+// Whether an effect of light is simulated.
+enum class LightEffectChoice { kAuto, kOn, kOff };
+
+template <>
+struct EnumNames<LightEffectChoice> {
+  static constexpr std::pair<LightEffectChoice, std::string_view> kNames[] = {
+      {LightEffectChoice::kAuto, "auto"},
+      {LightEffectChoice::kOn, "on"},
+      {LightEffectChoice::kOff, "off"}};
+};
+
 // How materials and light are found (nerf/train/material_fit.h).
 struct MaterialOptions {
+  double share = 0.3;
+  std::int64_t steps = 2000;
+  LightEffectChoice shadows = LightEffectChoice::kAuto;
+  LightEffectChoice bounces = LightEffectChoice::kAuto;
+  LightEffectChoice specular = LightEffectChoice::kAuto;
   int surface_resolution = 160;
   int directions = 512;
   int points = 1024;
@@ -20,6 +40,12 @@ struct MaterialOptions {
 
   template <class Self, class Visitor>
   static void Options(Self& o, Visitor&& option) {
+    option("share", o.share, "of a time budget", StrictlyBetween(0, 1),
+           "for materials, after the field");
+    option("steps", o.steps, "", AtLeast(1), "of the fit, without a time budget");
+    option("shadows", o.shadows, "of the light on the surface; auto: where there are any");
+    option("bounces", o.bounces, "light from surface to surface; auto: where it is worth it");
+    option("specular", o.specular, "a coat that reflects, and metal; auto: by a trial");
     option("surface_resolution", o.surface_resolution, "cells", Between(16, 1024),
            "along the longest side of what is opaque");
     option("directions", o.directions, "", Between(16, 1 << 14), "from which light arrives");

@@ -32,22 +32,28 @@ Color OfUnitLuminance(const Spectrum& spectrum) {
 
 }  // namespace
 
-std::optional<Color> ColorOfLight(std::string_view name) {
-  if (name == "A") return OfUnitLuminance(IlluminantA());
-  if (name == "E") return OfUnitLuminance(EqualEnergy());
+std::optional<Spectrum> SpectrumOfLight(std::string_view name) {
+  if (name == "A") return IlluminantA();
+  if (name == "E") return EqualEnergy();
   if (name.starts_with(kBlackBody)) {
     const auto kelvin = NumberFrom(name.substr(kBlackBody.size()));
     if (!kelvin) return std::nullopt;
     CheckTemperature(name, *kelvin, 1000, 100'000);
-    return OfUnitLuminance(BlackBody(*kelvin));
+    return BlackBody(*kelvin);
   }
   if (name.starts_with('D')) {
     const auto hundreds = NumberFrom(name.substr(1));
     if (!hundreds) return std::nullopt;
     CheckTemperature(name, *hundreds * 100, 4000, 25'000);
-    return OfUnitLuminance(Daylight(*hundreds * 100 * kDaylightScale));
+    return Daylight(*hundreds * 100 * kDaylightScale);
   }
   return std::nullopt;
+}
+
+std::optional<Color> ColorOfLight(std::string_view name) {
+  const std::optional<Spectrum> spectrum = SpectrumOfLight(name);
+  if (!spectrum) return std::nullopt;
+  return OfUnitLuminance(*spectrum);
 }
 
 }  // namespace nerf

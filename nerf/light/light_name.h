@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "nerf/image/color.h"
+#include "nerf/light/spectrum.h"
 
 namespace nerf {
 
@@ -16,5 +17,8 @@ inline constexpr const char* kLightNames = "D50, D65 (D40 to D250), A, E, blackb
 //   returns  nullopt if there is no such name
 // Throws InputError if the temperature is out of range.
 std::optional<Color> ColorOfLight(std::string_view name);
+
+// Its spectrum, in the same cases.
+std::optional<Spectrum> SpectrumOfLight(std::string_view name);
 
 }  // namespace nerf

@@ -22,7 +22,10 @@ fs::path SparsePath(const fs::path& run) { return run / "sparse"; }
 fs::path GaussiansPath(const fs::path& run) { return run / "splats.nerf"; }
 fs::path RepresentationPath(const fs::path& run) { return run / "representation.json"; }
 fs::path MaterialsPath(const fs::path& run) { return run / "materials.nerf"; }
-fs::path EnvironmentPath(const fs::path& run) { return run / "environment.exr"; }
+fs::path EnvironmentPath(const fs::path& run, const std::string& light) {
+  return run / (light.empty() ? "environment.exr" : "environment_" + light + ".exr");
+}
+fs::path LightsPath(const fs::path& run) { return run / "lights.json"; }
 
 std::shared_ptr<const GaussianModel> OpenGaussians(const fs::path& run) {
   if (!fs::exists(GaussiansPath(run))) {

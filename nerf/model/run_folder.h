@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "nerf/model/gaussian_model.h"
 #include "nerf/model/snapshot.h"
@@ -18,8 +19,9 @@ namespace nerf {
 //   colmap/                  COLMAP's files, if poses were found from photographs
 //   splats.nerf              Gaussians, if training or nerf splat made them
 //   representation.json      which of the two is better, and how that was decided
-//   materials.nerf           surface, materials and light, if nerf materials found them
-//   environment.exr          that light
+//   materials.nerf           surface, materials and light, if they were found
+//   environment.exr          that light; environment_NAME.exr, where there are several
+//   lights.json              what is known of the lights, if nerf train was given it
 //   points/                  the same, if sparse points were found for poses that were given
 //   picture.png              a photograph and its rendering, at the end of training
 //   refined_transforms.json  refined poses, with pose_refinement
@@ -37,7 +39,10 @@ std::filesystem::path SparsePath(const std::filesystem::path& run);
 std::filesystem::path GaussiansPath(const std::filesystem::path& run);
 std::filesystem::path RepresentationPath(const std::filesystem::path& run);
 std::filesystem::path MaterialsPath(const std::filesystem::path& run);
-std::filesystem::path EnvironmentPath(const std::filesystem::path& run);
+//   light  name of one of several
+std::filesystem::path EnvironmentPath(const std::filesystem::path& run,
+                                      const std::string& light = "");
+std::filesystem::path LightsPath(const std::filesystem::path& run);
 
 // A trained run, for rendering and evaluation.
 struct OpenedRun {

@@ -138,11 +138,26 @@ struct GaussiansEnded {
   std::optional<ComparedPsnr> reached;
 };
 
-// Materials.
+// Materials: the field's surfaces at the poses of photographs, what of the light is simulated, and
+// steps.
+struct LightEffectsDecided {
+  bool shadows = true, bounces = true, specular = true;
+  std::optional<double> blocked;      // share of the light directions; absent: not asked
+  std::optional<double> specular_db;  // gain of a coat in a trial; absent: there was none
+};
 struct MaterialsStepped {
   std::int64_t step = 0;
   double fraction = 0;  // of the fit
   double psnr = 0;      // dB, of the pixels of the last steps
+};
+struct MaterialsFound {
+  bool finished = false;  // false: stopped on request, and can be resumed
+  std::int64_t steps = 0;
+  double psnr = 0;     // dB, of the pixels of the last steps, against their reflection
+  double seconds = 0;  // of the fit
+  std::size_t vertices = 0, lights = 0;
+  bool is_relative = false;  // some light is found, so that only its product with albedo is known
+  std::filesystem::path run;
 };
 
 using PipelineEvent =
@@ -150,7 +165,8 @@ using PipelineEvent =
                  InspectionProgress, CaptureInspected, DataPlanned, VerdictReached, EffectsTried,
                  EffectsUndecided, BudgetPlanned, TrainingBegan, TrainerEvent, PosesRefined,
                  TrainingEnded, SurfacesRendered, GaussiansStepped, RepresentationDecided,
-                 GaussiansFailed, GaussiansEnded, MaterialsStepped>;
+                 GaussiansFailed, GaussiansEnded, LightEffectsDecided, MaterialsStepped,
+                 MaterialsFound>;
 using PipelineListener = std::function<void(const PipelineEvent&)>;
 
 // A listener that ignores all events.

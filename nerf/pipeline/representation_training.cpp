@@ -39,10 +39,12 @@ class Training {
         listener_(listener),
         options_(trainer.GetModel().config.train),
         splats_(trainer.GetModel().config.splats),
+        budget_(RadianceSeconds(trainer.GetModel().config)),
         spent_(trainer.SpentSeconds()),
         record_(ReadRepresentation(run)) {}
 
   RepresentationsTrained Run() {
+    if (HasBudget()) trainer_.EndAt(budget_);
     if (!record_.makes_splats && !Decide()) return Result(field_.finished);
     if (*record_.makes_splats && HasBudget()) {
       // Where it has ended in an earlier command, it has, whatever the clock says.
@@ -65,11 +67,11 @@ class Training {
   RepresentationsTrained Result(bool finished) const {
     return {field_, record_, finished, field_.reached_target || splats_reached_target_};
   }
-  bool HasBudget() const { return options_.time_budget > 0; }
+  bool HasBudget() const { return budget_ > 0; }
   // Of what is left of the time budget when training begins.
-  double Part(double share) const { return share * (options_.time_budget - spent_); }
+  double Part(double share) const { return share * (budget_ - spent_); }
   // Of the Gaussians, planned; 0: they take iterations.
-  double FitSeconds() const { return splats_.share * options_.time_budget; }
+  double FitSeconds() const { return splats_.share * budget_; }
   std::int64_t SplatSteps() const { return std::min<std::int64_t>(splats_.steps, options_.steps); }
 
   void TrainField(double until) {
@@ -115,7 +117,7 @@ class Training {
 
   // False where training has ended, or was stopped, before.
   bool DecideByTrial(RepresentationDecided& decided) {
-    TrainField(HasBudget() ? (spent_ + Part(kTrialAt)) / options_.time_budget : kTrialAt);
+    TrainField(HasBudget() ? (spent_ + Part(kTrialAt)) / budget_ : kTrialAt);
     if (stop_) return false;
     if (field_.finished) {
       // With Gaussians the decision was there, and its file was lost.
@@ -170,7 +172,7 @@ class Training {
     record_.field_seconds = 0;
     WriteRepresentation(record_, run_);
     if (HasBudget()) {
-      trainer_.EndAt(options_.time_budget);
+      trainer_.EndAt(budget_);
       TrainField(1);
     }
     return field_.finished;
@@ -212,7 +214,7 @@ class Training {
       });
       if (!start) return false;
       if (HasBudget()) {
-        const double left = options_.time_budget - kEndSeconds - trainer_.SpentSeconds();
+        const double left = budget_ - kEndSeconds - trainer_.SpentSeconds();
         plan.seconds = std::max(kLeastFitSeconds, left);
       }
     }
@@ -233,7 +235,8 @@ class Training {
   const PipelineListener& listener_;
   const TrainOptions& options_;
   const SplatOptions& splats_;
-  const double spent_;  // seconds, when training begins
+  const double budget_;  // seconds; 0: none
+  const double spent_;   // seconds, when training begins
   RepresentationRecord record_;
   TrainSummary field_;
   bool splats_reached_target_ = false;
@@ -249,7 +252,7 @@ std::string WhyNoGaussians(const Config& config, const Dataset& data) {
     return "without validation photographs nothing can be compared";
   }
   return TooLittleMemory(
-      SplatOptionsFor(config.splats, data, config.splats.share * config.train.time_budget));
+      SplatOptionsFor(config.splats, data, config.splats.share * RadianceSeconds(config)));
 }
 
 RepresentationsTrained TrainRepresentations(Trainer& trainer, const Dataset& data,

@@ -4,7 +4,7 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/base/quantile.h"
-#include "nerf/geometry/level_set_mesh.h"
+#include "nerf/geometry/surface_mesh.h"
 #include "nerf/scene/camera.h"
 #include "nerf/scene/depth_fusion.h"
 
@@ -72,7 +72,7 @@ std::optional<ExtractedSurface> ExtractSurface(const SceneModel& model,
   ExtractedSurface surface;
   surface.distance = FuseDepth(depths, BoxOf(depths, options));
   Blur(surface.distance, options.blur);
-  surface.mesh = LevelSetMesh(surface.distance, 0);
+  surface.mesh = SurfaceMesh(surface.distance);
   return surface;
 }
 

@@ -22,7 +22,7 @@ struct SurfaceExtractionOptions {
 // The surface of a model, in the normalized frame.
 struct ExtractedSurface {
   ScalarGrid distance;  // signed, in units of the truncation; its gradient points outwards
-  Mesh mesh;            // where it is 0, with normals
+  Mesh mesh;            // SurfaceMesh of it
 };
 
 // The surface on which the depths agree that a model renders at the poses of photographs, within

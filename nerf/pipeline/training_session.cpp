@@ -17,6 +17,7 @@
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/budget_plan.h"
 #include "nerf/pipeline/representation_training.h"
+#include "nerf/pipeline/training_materials.h"
 #include "nerf/pipeline/training_picture.h"
 #include "nerf/pipeline/training_resolution.h"
 #include "sfm/colmap_estimate.h"
@@ -144,6 +145,7 @@ void TrainingSession::PrepareCapture() {
     config_ = ConfigWithDecisions(request_.preset);
   }
   MakeOutputFolder(request_.run);
+  if (config_.materials) PrepareLights(request_.lights, scene_, request_.run);
   SaveSparsePoints(scene_.posed, config_, request_.run);
   if (request_.effects.inspect) {
     listener_(
@@ -152,6 +154,7 @@ void TrainingSession::PrepareCapture() {
   WriteConfig();  // first, because it marks the folder as a run folder
   RemoveAll(RepresentationPath(request_.run));  // of a run that was never saved
   RemoveAll(GaussiansPath(request_.run));
+  RemoveAll(MaterialsPath(request_.run));
   sfm::WriteTransformsJson(scene_.posed, PosesPath(request_.run));
   // Read back, so that a resumed run has the same poses bit for bit.
   posed_ = sfm::ReadTransformsJson(PosesPath(request_.run));
@@ -184,6 +187,7 @@ void TrainingSession::DecideEffects() {
 }
 
 void TrainingSession::PlanTimeBudget() {
+  if (config_.materials) RequireOneExposure(config_);
   const double spent = SpentSeconds(), budget = config_.train.time_budget;
   if (budget > 0 && spent == budget / 2) {
     listener_(Warning{
@@ -196,8 +200,9 @@ void TrainingSession::PlanTimeBudget() {
   const bool has_splats = config_.train.representation != Representation::kField &&
                           WhyNoGaussians(config_, data_).empty();
   const double share = has_splats ? 1 - config_.splats.share : 1;
-  const BudgetPlan plan = PlanBudget(*trainer_, share * (budget - spent));
-  listener_(BudgetPlanned{budget, share * (budget - spent), plan.preset, plan.steps});
+  const double seconds = share * (RadianceSeconds(config_) - spent);
+  const BudgetPlan plan = PlanBudget(*trainer_, seconds);
+  listener_(BudgetPlanned{budget, seconds, plan.preset, plan.steps});
   if (plan.preset == request_.preset) return;
   config_ = ConfigWithDecisions(plan.preset);
   WriteConfig();
@@ -212,7 +217,9 @@ TrainSummary TrainingSession::Train(const std::atomic<bool>& stop) {
   std::optional<fs::path> picture;
   if (trained.finished) picture = WritePicture(trained.record.Best());
   TrainSummary summary = trained.field;
-  summary.finished = trained.finished;
+  summary.finished = trained.finished &&
+                     (!config_.materials || MaterialsAfterTraining(*trainer_, posed_, data_,
+                                                                   request_.run, stop, listener_));
   summary.reached_target = trained.reached_target;
   listener_(TrainingEnded{summary, config_.train, request_.run, picture});
   return summary;

@@ -25,6 +25,7 @@ struct TrainingRequest {
   bool preset_is_given = false;          // otherwise a time budget chooses the preset
   std::vector<std::string> assignments;  // "block.key=value"
   EffectsRequest effects;
+  std::filesystem::path lights;  // a lights.json, for materials; empty: none
 };
 
 // The whole of `nerf train`, from an input to a trained run. Reports events one at a time, in the

@@ -1,5 +1,6 @@
 #include "nerf/relight/environment_light.h"
 
+#include <Eigen/Geometry>
 #include <numbers>
 #include <vector>
 
@@ -20,6 +21,12 @@ Eigen::Matrix3d MapFromFrame(const Eigen::Matrix3d& frame_from_input) {
   constexpr double kUpright = 0.94;  // cosine of 20 degrees
   if (frame_from_input(2, 2) < kUpright) return MapFromZUpWorld();
   return MapFromZUpWorld() * frame_from_input.transpose();
+}
+
+Eigen::Matrix3d TurnedMap(const Eigen::Matrix3d& frame_from_input, double degrees) {
+  const double angle = -degrees * std::numbers::pi / 180;
+  return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix() *
+         MapFromFrame(frame_from_input);
 }
 
 Image EnvironmentImage(const torch::Tensor& radiance, int height,

@@ -17,6 +17,10 @@ Eigen::Matrix3d MapFromZUpWorld();
 // otherwise, as in a reconstruction from photographs, that of the frame.
 Eigen::Matrix3d MapFromFrame(const Eigen::Matrix3d& frame_from_input);
 
+// MapFromFrame for a map that is turned about the vertical axis, counter-clockwise as seen from
+// above.
+Eigen::Matrix3d TurnedMap(const Eigen::Matrix3d& frame_from_input, double degrees);
+
 // A map of 2 height x height pixels, in between the directions of a light.
 //   radiance  [D,3] from LightDirections(D)
 Image EnvironmentImage(const torch::Tensor& radiance, int height,

@@ -21,8 +21,10 @@ kernels::HashGridOptions GridOf(int resolution) {
 
 }  // namespace
 
-MaterialField::MaterialField(const Eigen::AlignedBox3d& box, int resolution, std::uint64_t seed)
+MaterialField::MaterialField(const Eigen::AlignedBox3d& box, int resolution, bool is_matt,
+                             std::uint64_t seed)
     : box_(box),
+      is_matt_(is_matt),
       hash_encoding_(std::make_shared<HashEncoding>(GridOf(resolution), seed)),
       network_(
           std::make_shared<Mlp>(std::vector<std::int64_t>{hash_encoding_->Layout().OutputSize(),
@@ -40,9 +42,11 @@ SurfaceProperties MaterialField::forward(const torch::Tensor& positions) {
   const torch::Tensor raw = network_->forward(hash_encoding_->forward(in_cube));
   SurfaceProperties result;
   result.material.base_color = torch::sigmoid(raw.slice(1, 0, 3));
-  result.material.roughness =
-      kLeastRoughness + (1 - kLeastRoughness) * torch::sigmoid(raw.select(1, 3));
-  result.material.metallic = torch::sigmoid(raw.select(1, 4) + kDielectricBias);
+  if (!is_matt_) {
+    result.material.roughness =
+        kLeastRoughness + (1 - kLeastRoughness) * torch::sigmoid(raw.select(1, 3));
+    result.material.metallic = torch::sigmoid(raw.select(1, 4) + kDielectricBias);
+  }
   result.normal_offset = torch::tanh(raw.slice(1, 5, 8));
   return result;
 }

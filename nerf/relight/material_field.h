@@ -21,15 +21,18 @@ class MaterialField : public torch::nn::Module {
  public:
   //   box         the space in which it is defined, normalized units
   //   resolution  of the finest level, cells along the longest side
-  MaterialField(const Eigen::AlignedBox3d& box, int resolution, std::uint64_t seed);
+  //   is_matt     without a coat: base colour and normal alone
+  MaterialField(const Eigen::AlignedBox3d& box, int resolution, bool is_matt, std::uint64_t seed);
 
   // positions [P,3], normalized frame. Differentiable in the parameters.
   SurfaceProperties forward(const torch::Tensor& positions);
 
   const Eigen::AlignedBox3d& Box() const { return box_; }
+  bool IsMatt() const { return is_matt_; }
 
  private:
   Eigen::AlignedBox3d box_;
+  bool is_matt_;
   std::shared_ptr<HashEncoding> hash_encoding_;
   std::shared_ptr<Mlp> network_;
 };

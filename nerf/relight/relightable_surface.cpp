@@ -2,6 +2,12 @@
 
 namespace nerf {
 
+SurfaceProperties RelightableSurface::At(const torch::Tensor& positions) const {
+  SurfaceProperties found = field->forward(positions);
+  for (const MaterialEdit& edit : edits) Apply(edit, positions, found.material);
+  return found;
+}
+
 torch::Tensor ShadingNormals(const torch::Tensor& normal, const torch::Tensor& offset,
                              double most_offset) {
   const torch::Tensor turned = normal + most_offset * offset;

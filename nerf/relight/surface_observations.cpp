@@ -68,13 +68,16 @@ SurfaceObservations ObserveSurface(const std::vector<ObservedView>& views, Color
     *rows = torch::empty({count, 3});
   }
   all.vertex = torch::empty({count}, torch::kLong);
+  all.group = torch::empty({count}, torch::kLong);
   std::int64_t i = 0;
-  for (auto& own : of_views) {
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    auto& own = of_views[view];
     for (const Observation& o : own) {
       std::copy_n(o.position.data(), 3, all.position.data_ptr<float>() + 3 * i);
       std::copy_n(o.normal.data(), 3, all.normal.data_ptr<float>() + 3 * i);
       std::copy_n(o.to_camera.data(), 3, all.to_camera.data_ptr<float>() + 3 * i);
       std::copy_n(o.radiance.data(), 3, all.radiance.data_ptr<float>() + 3 * i);
+      all.group.data_ptr<std::int64_t>()[i] = views[view].group;
       all.vertex.data_ptr<std::int64_t>()[i++] = o.vertex;
     }
     own = {};
@@ -82,12 +85,14 @@ SurfaceObservations ObserveSurface(const std::vector<ObservedView>& views, Color
   return all;
 }
 
-torch::Tensor MeanRadiance(const SurfaceObservations& observations, std::int64_t vertices) {
-  const torch::Tensor count =
-      torch::zeros({vertices, 1})
-          .index_add_(0, observations.vertex, torch::ones({observations.Size(), 1}));
-  return torch::zeros({vertices, 3}).index_add_(0, observations.vertex, observations.radiance) /
-         count.clamp_min(1);
+torch::Tensor MeanRadiance(const SurfaceObservations& observations, std::int64_t groups,
+                           std::int64_t vertices) {
+  const torch::Tensor row = observations.vertex + vertices * observations.group;
+  const torch::Tensor count = torch::zeros({groups * vertices, 1})
+                                  .index_add_(0, row, torch::ones({observations.Size(), 1}));
+  return (torch::zeros({groups * vertices, 3}).index_add_(0, row, observations.radiance) /
+          count.clamp_min(1))
+      .view({groups, vertices, 3});
 }
 
 }  // namespace nerf

@@ -16,6 +16,7 @@ struct ObservedView {
   const View* photograph = nullptr;  // must outlive this
   Camera camera;
   Eigen::Isometry3d surface_from_camera;
+  std::int64_t group = 0;  // of photographs under one light
 };
 
 // Pixels of photographs that show a surface; N in the order of views and pixels.
@@ -25,6 +26,7 @@ struct SurfaceObservations {
   torch::Tensor to_camera;  // [N,3] unit
   torch::Tensor radiance;   // [N,3] linear
   torch::Tensor vertex;     // [N] int64, the nearest one of the face
+  torch::Tensor group;      // [N] int64, of the photograph
 
   std::int64_t Size() const { return vertex.size(0); }
 };
@@ -36,7 +38,8 @@ struct SurfaceObservations {
 SurfaceObservations ObserveSurface(const std::vector<ObservedView>& views, ColorEncoding encoding,
                                    const Mesh& surface, const MeshRays& rays);
 
-// [V,3] the mean of what is observed at each vertex; 0 where nothing is.
-torch::Tensor MeanRadiance(const SurfaceObservations& observations, std::int64_t vertices);
+// [G,V,3] the mean of what the photographs of each group show at each vertex; 0 where none does.
+torch::Tensor MeanRadiance(const SurfaceObservations& observations, std::int64_t groups,
+                           std::int64_t vertices);
 
 }  // namespace nerf

@@ -19,23 +19,29 @@ struct SurfaceBatch {
   torch::Tensor to_camera;  // [P,3] unit
 };
 
+// Without a coat, of which roughness and metallic are undefined, a surface is matt (Lambert's).
 struct MaterialBatch {
   torch::Tensor base_color;  // [P,3] in [0,1]
   torch::Tensor roughness;   // [P] in [kLeastRoughness, 1]
   torch::Tensor metallic;    // [P] in [0,1]
+
+  bool IsMatt() const { return !roughness.defined(); }
+  MaterialBatch Rows(std::int64_t begin, std::int64_t end) const;
 };
 
 // What arrives at the points from each of D directions.
 struct ArrivingLight {
   torch::Tensor directions;  // [D,3] unit, towards the light
-  torch::Tensor radiance;    // [D,3] of the environment
-  torch::Tensor visibility;  // [P,D] share of it that arrives
-  torch::Tensor indirect;    // [P,D,3] radiance of what stands in the way; undefined: none
+  torch::Tensor radiance;    // [D,3] of the environment; undefined: `nearby` has all
+  torch::Tensor visibility;  // [P,D] share of it that arrives; undefined: all of it
+  torch::Tensor nearby;      // [P,D,3] radiance of what stands in the way; undefined: none
 };
 
 // [P,3] radiance towards the camera, by lobe.
 struct ReflectedLight {
   torch::Tensor diffuse, specular;
+
+  torch::Tensor Sum() const { return diffuse + specular; }
 };
 
 // The width s of lobes that `directions` directions resolve.
@@ -45,5 +51,11 @@ double LeastAlpha(std::int64_t directions);
 // the camera, n.v is taken as 0.001. Throws c10::Error on a shape mismatch.
 ReflectedLight Shade(const SurfaceBatch& surface, const MaterialBatch& material,
                      const ArrivingLight& light);
+
+// The same of a light of no extent, a sun or a lamp; its lobe has the width of the material.
+//   to_light    [P,3] unit
+//   irradiance  [P,3] on a surface that faces it; 0 in its shadow
+ReflectedLight ShadeFrom(const SurfaceBatch& surface, const MaterialBatch& material,
+                         const torch::Tensor& to_light, const torch::Tensor& irradiance);
 
 }  // namespace nerf

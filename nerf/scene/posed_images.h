@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,19 @@ struct Camera {
 // The split of an image. kUnspecified until AssignSplits where the source does not define it.
 enum class Split { kUnspecified, kTrain, kValidation, kTest };
 
+// The light on a photograph, as far as a capture names it.
+struct NamedLight {
+  std::string name;  // of all photographs under the same one; empty: none is given
+  // Towards a single distant light in a dark room (one light at a time), unit, in the world.
+  std::optional<Eigen::Vector3d> direction;
+  Eigen::Array3d irradiance = Eigen::Array3d::Constant(std::numbers::pi);  // of that light
+
+  bool operator==(const NamedLight& other) const {
+    return name == other.name && direction == other.direction &&
+           (irradiance == other.irradiance).all();
+  }
+};
+
 // One photograph with a known pose.
 struct PosedImage {
   std::string name;                 // in the source, unique, '/' between folders
@@ -52,6 +66,7 @@ struct PosedImage {
       world_from_camera;         // OpenCV axes: x right, y down, z forward; units of the source
   bool upright_by_exif = false;  // the camera describes the pixels after rotation by EXIF
   Split split = Split::kUnspecified;
+  NamedLight light = {};
 };
 
 // The folder to which the name of an image is relative: "photos" for photos/left/1.jpg of the name

@@ -136,6 +136,7 @@ TEST(Config, EveryKeyHasHelp) {
   // Exactly the keys of the JSON with every effect on.
   Config config;
   for (const EffectDescriptor* effect : AllEffects()) config = WithEffect(config, *effect, true);
+  config.materials.emplace();
   std::set<std::string> keys;
   const nlohmann::json flat = JsonFromConfig(config).flatten();
   for (const auto& [pointer, value] : flat.items()) {
@@ -143,6 +144,7 @@ TEST(Config, EveryKeyHasHelp) {
     std::ranges::replace(key, '/', '.');
     keys.insert(key);
   }
+  keys.insert("materials");
   for (const EffectDescriptor* effect : AllEffects()) {
     keys.insert(std::string("effects.") + effect->name);
   }

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nerf/geometry/level_set_mesh.h"
+#include "nerf/geometry/surface_mesh.h"
 #include "nerf/model/checkpoint.h"
 #include "tests/support/input_error_of.h"
 #include "tests/support/scratch_folder.h"
@@ -29,11 +29,11 @@ Materials SmallMaterials() {
       }
     }
   }
-  surface.mesh = LevelSetMesh(surface.distance, 0);
+  surface.mesh = SurfaceMesh(surface.distance);
   surface.field = std::make_shared<MaterialField>(
-      Eigen::AlignedBox3d(Eigen::Vector3d(-1, -1, -2), Eigen::Vector3d(1, 1, 1)), 20, 5);
+      Eigen::AlignedBox3d(Eigen::Vector3d(-1, -1, -2), Eigen::Vector3d(1, 1, 1)), 20, false, 5);
   surface.normal_offset = materials.options.normal_offset;
-  surface.light = torch::rand({64, 3});
+  surface.lights = {{"noon", torch::rand({64, 3}), {PointLight{{1, 2, 3}, {4, 5, 6}}}}};
   return materials;
 }
 
@@ -50,7 +50,12 @@ TEST(MaterialsFile, IsReadAsItWasWritten) {
   EXPECT_EQ(read.surface.distance.size, written.surface.distance.size);
   EXPECT_EQ(read.surface.mesh.vertices, written.surface.mesh.vertices);
   EXPECT_EQ(read.surface.mesh.faces, written.surface.mesh.faces);
-  EXPECT_TRUE(torch::equal(read.surface.light, written.surface.light));
+  ASSERT_EQ(read.surface.lights.size(), 1u);
+  const LightGroup& light = read.surface.lights[0];
+  EXPECT_EQ(light.name, "noon");
+  EXPECT_TRUE(torch::equal(light.environment, written.surface.lights[0].environment));
+  ASSERT_EQ(light.lamps.size(), 1u);
+  EXPECT_EQ(std::get<PointLight>(light.lamps[0]).x_in_world, Eigen::Vector3d(1, 2, 3));
   const torch::Tensor position = torch::rand({10, 3});
   EXPECT_TRUE(torch::equal(read.surface.field->forward(position).material.base_color,
                            written.surface.field->forward(position).material.base_color));

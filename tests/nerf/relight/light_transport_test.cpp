@@ -123,9 +123,9 @@ TEST(LightTransport, BlockersGiveTheirLight) {
   const ArrivingLight light =
       LightAt(transport, torch::tensor({1, 0}, torch::kLong), environment, radiance);
   EXPECT_TRUE(torch::equal(light.visibility, torch::tensor({{0.0f, 1.0f}, {1.0f, 0.0f}})));
-  EXPECT_TRUE(torch::equal(light.indirect[0][0], radiance[0]));
-  EXPECT_TRUE(torch::equal(light.indirect[1][1], radiance[2]));
-  EXPECT_EQ(light.indirect[0][1].abs().sum().item<float>(), 0);
+  EXPECT_TRUE(torch::equal(light.nearby[0][0], radiance[0]));
+  EXPECT_TRUE(torch::equal(light.nearby[1][1], radiance[2]));
+  EXPECT_EQ(light.nearby[0][1].abs().sum().item<float>(), 0);
 }
 
 }  // namespace

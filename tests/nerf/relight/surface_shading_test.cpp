@@ -235,7 +235,7 @@ TEST(SurfaceShading, IndirectLightTakesThePlaceOfTheEnvironment) {
   light.visibility = (torch::arange(128) % 2 == 0).to(torch::kDouble).unsqueeze(0);
   const ReflectedLight shadowed = Shade(surface, material, light);
   EXPECT_LT(shadowed.diffuse.sum().item<double>(), 0.7 * open.diffuse.sum().item<double>());
-  light.indirect = (1 - light.visibility).unsqueeze(2).expand({1, 128, 3}).contiguous();
+  light.nearby = (1 - light.visibility).unsqueeze(2).expand({1, 128, 3}).contiguous();
   const ReflectedLight closed = Shade(surface, material, light);
   EXPECT_LT((closed.diffuse - open.diffuse).abs().max().item<double>(), 1e-12);
   EXPECT_LT((closed.specular - open.specular).abs().max().item<double>(), 1e-12);
@@ -247,8 +247,8 @@ TEST(SurfaceShading, GradientsAreThoseOfCentralDifferences) {
   ArrivingLight light = WhiteLight(3, 96);
   light.radiance = light.radiance * (1.5 + light.directions);
   light.visibility = (torch::arange(3 * 96).view({3, 96}) % 3 != 0).to(torch::kDouble);
-  light.indirect = (1 - light.visibility).unsqueeze(2) * 0.3 * torch::ones({1, 1, 3});
-  light.indirect = light.indirect.to(torch::kDouble);
+  light.nearby = (1 - light.visibility).unsqueeze(2) * 0.3 * torch::ones({1, 1, 3});
+  light.nearby = light.nearby.to(torch::kDouble);
   const std::vector<torch::Tensor*> inputs = {&surface.normal, &material.base_color,
                                               &material.roughness, &material.metallic,
                                               &light.radiance};

@@ -82,13 +82,25 @@ SurfaceObservations Observe(const Scene& scene) {
   observations.normal = scene.normal.index_select(0, observations.vertex);
   observations.to_camera = torch::cat(to_camera);
   observations.radiance = torch::cat(seen);
+  observations.group = torch::zeros_like(observations.vertex);
   return observations;
+}
+
+// What the photographs of Observe show, under a light that is known, or not: undefined.
+LitSurface LitBy(const Scene& scene, const torch::Tensor& light) {
+  LitSurface lit;
+  lit.observations = Observe(scene);
+  lit.transport = scene.transport;
+  lit.lights = {{"", light, {}}};
+  lit.vertex_position = scene.position;
+  lit.vertex_normal = scene.normal;
+  return lit;
 }
 
 std::shared_ptr<MaterialField> FieldOf(const Scene& scene) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& vertex : scene.mesh.vertices) box.extend(vertex.cast<double>());
-  return std::make_shared<MaterialField>(box, 32, 1);
+  return std::make_shared<MaterialField>(box, 32, false, 1);
 }
 
 // The root mean square difference from the albedo, after one scale a channel if it is asked for.
@@ -107,10 +119,10 @@ double Fit(const Scene& scene, const std::shared_ptr<MaterialField>& field, int 
            const torch::Tensor& light, torch::Tensor* found_light = nullptr) {
   MaterialOptions options;
   options.points = 256;
-  MaterialFit fit(Observe(scene), scene.transport, field, options, 1, light);
+  MaterialFit fit(LitBy(scene, light), field, options, 1);
   double error = 0;
   for (int i = 0; i < steps; ++i) error = fit.Step(static_cast<double>(i) / steps);
-  if (found_light != nullptr) *found_light = fit.Light();
+  if (found_light != nullptr) *found_light = fit.Environments()[0];
   return error;
 }
 
@@ -127,7 +139,7 @@ TEST(MaterialFit, FindsLightAndAlbedoButForTheirScale) {
   torch::Tensor light;
   EXPECT_LT(Fit(scene, field, 400, {}, &light), 4e-4);
   // Half the error of what is observed, taken for the albedo.
-  const torch::Tensor observed = MeanRadiance(Observe(scene), scene.position.size(0));
+  const torch::Tensor observed = MeanRadiance(Observe(scene), 1, scene.position.size(0))[0];
   EXPECT_LT(AlbedoError(scene, AlbedoOf(scene, *field), true),
             AlbedoError(scene, observed, true) / 2);
   // The pin of the scale, and where the light comes from.
@@ -136,6 +148,87 @@ TEST(MaterialFit, FindsLightAndAlbedoButForTheirScale) {
   const torch::Tensor down = (scene.transport.directions.select(1, 2) < -0.3).nonzero().squeeze(1);
   EXPECT_GT(light.index_select(0, up).mean().item<double>(),
             2 * light.index_select(0, down).mean().item<double>());
+}
+
+// One sun at a time, in a dark room: its scale is known, and so is the albedo's.
+TEST(MaterialFit, FindsAlbedoUnderOneSunAtATime) {
+  const Scene scene = MakeScene();
+  const MeshRays rays(scene.mesh);
+  const std::int64_t count = scene.position.size(0);
+  const torch::Tensor to_camera = scene.normal;  // seen from the front
+  const MaterialBatch material{scene.albedo, {}, {}};
+  LitSurface lit;
+  lit.transport = scene.transport;
+  lit.vertex_position = scene.position;
+  lit.vertex_normal = scene.normal;
+  std::vector<torch::Tensor> radiance, visible_rows, groups;
+  std::vector<std::vector<Lamp>> lamps;
+  for (int k = 0; k < 6; ++k) {
+    lit.lights.push_back({std::to_string(k),
+                          torch::zeros({kDirections, 3}),
+                          {DirectionalLight{FibonacciDirection(k, 6), {3, 3, 3}}}});
+    lamps.push_back(lit.lights.back().lamps);
+  }
+  const LampTable table(lamps);
+  for (int k = 0; k < 6; ++k) {
+    const torch::Tensor group = torch::full({count}, k, torch::kLong);
+    const torch::Tensor visible = table.Visibility(scene.position, scene.normal, group, rays, 0.1f);
+    const LampLight light = table.At(scene.position, group, 0);
+    const auto reflect = [&](const torch::Tensor& indirect) {
+      torch::Tensor sum =
+          ShadeFrom({scene.normal, to_camera}, material, light.to_light, light.irradiance * visible)
+              .Sum();
+      if (!indirect.defined()) return sum;
+      const torch::Tensor dark = torch::zeros({kDirections, 3});
+      return sum +
+             Shade({scene.normal, to_camera}, material,
+                   LightAt(scene.transport, torch::arange(count, torch::kLong), dark, indirect))
+                 .Sum();
+    };
+    radiance.push_back(reflect(reflect({})));
+    visible_rows.push_back(visible);
+    groups.push_back(group);
+  }
+  SurfaceObservations& seen = lit.observations;
+  seen.position = scene.position.repeat({6, 1});
+  seen.normal = scene.normal.repeat({6, 1});
+  seen.to_camera = to_camera.repeat({6, 1});
+  seen.radiance = torch::cat(radiance);
+  seen.vertex = torch::arange(count, torch::kLong).repeat({6});
+  seen.group = torch::cat(groups);
+  lit.lamp_visibility = torch::cat(visible_rows);
+  lit.vertex_lamp_visibility = torch::stack(visible_rows);
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : scene.mesh.vertices) box.extend(vertex.cast<double>());
+  const auto field = std::make_shared<MaterialField>(box, 32, true, 1);
+  MaterialOptions options;
+  options.points = 256;
+  MaterialFit fit(lit, field, options, 1);
+  for (int i = 0; i < 300; ++i) fit.Step(i / 300.0);
+  EXPECT_LT(AlbedoError(scene, AlbedoOf(scene, *field), false), 0.04);
+}
+
+TEST(MaterialFit, GoesOnWithTheSameBits) {
+  const Scene scene = MakeScene();
+  const LitSurface lit = LitBy(scene, {});
+  MaterialOptions options;
+  options.points = 64;
+  const auto whole = FieldOf(scene), parts = FieldOf(scene);
+  MaterialFit uninterrupted(lit, whole, options, 1);
+  for (int i = 0; i < 8; ++i) uninterrupted.Step(i / 8.0);
+  std::map<std::string, torch::Tensor> state;
+  {
+    MaterialFit first(lit, parts, options, 1);
+    for (int i = 0; i < 3; ++i) first.Step(i / 8.0);
+    first.AddTo(state);
+    for (auto& item : state) item.second = item.second.clone();
+  }
+  MaterialFit second(lit, parts, options, 1);
+  second.LoadFrom(state, 3);
+  for (int i = 3; i < 8; ++i) second.Step(i / 8.0);
+  const auto a = whole->parameters(), b = parts->parameters();
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(torch::equal(a[i], b[i])) << i;
+  EXPECT_TRUE(torch::equal(uninterrupted.Environments(), second.Environments()));
 }
 
 TEST(MaterialFit, TheSameSeedGivesTheSameBits) {
@@ -149,9 +242,9 @@ TEST(MaterialFit, TheSameSeedGivesTheSameBits) {
 
 TEST(MaterialFit, ALossThatIsNotFiniteNamesItsStep) {
   const Scene scene = MakeScene();
-  SurfaceObservations observations = Observe(scene);
-  observations.radiance.fill_(std::numeric_limits<float>::quiet_NaN());
-  MaterialFit fit(observations, scene.transport, FieldOf(scene), {}, 1);
+  LitSurface lit = LitBy(scene, {});
+  lit.observations.radiance.fill_(std::numeric_limits<float>::quiet_NaN());
+  MaterialFit fit(lit, FieldOf(scene), {}, 1);
   EXPECT_THROW(fit.Step(0), NonFiniteError);
 }
 
