@@ -52,6 +52,20 @@ Split SplitFromName(const std::string& name) {
   return name == "validation" ? Split::kValidation : Split::kTest;
 }
 
+// Those of a run with materials.
+std::optional<LightEffectMeasurements> LightEffectsOf(const OpenedRun& run,
+                                                      const EvalArguments& arguments) {
+  if (!fs::exists(MaterialsPath(arguments.run))) return std::nullopt;
+  std::optional<ProgressLine> progress;
+  return MeasureLightEffects(run, ReadMaterials(MaterialsPath(arguments.run)),
+                             [&](std::size_t done, std::size_t of) {
+                               if (!progress) {
+                                 progress.emplace("relighting", static_cast<std::int64_t>(of));
+                               }
+                               progress->Update(static_cast<std::int64_t>(done));
+                             });
+}
+
 void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const fs::path& output) {
   TrainingDisplay display;
   std::optional<ProgressLine> progress;
@@ -62,12 +76,15 @@ void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const
         progress->Update(static_cast<std::int64_t>(done), effect.name);
       });
   progress.reset();
-  const nlohmann::json result = JsonFromMeasurements(effects, arguments.effects_steps);
+  nlohmann::json result = JsonFromMeasurements(effects, arguments.effects_steps);
+  const auto of_light = LightEffectsOf(run, arguments);
+  if (of_light) result["light"] = JsonFromLightEffects(*of_light);
   WriteFileAtomically(output / "effects_worth.json", result.dump(2) + "\n");
   if (arguments.json) {
     fmt::print("{}\n", result.dump(2));
   } else {
     PrintMeasurements(effects, arguments.effects_steps);
+    if (of_light) PrintLightEffects(*of_light);
   }
 }
 

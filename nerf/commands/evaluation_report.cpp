@@ -124,6 +124,30 @@ void PrintRow(const std::string& name, const std::optional<double>& found,
 
 }  // namespace
 
+nlohmann::json JsonFromLightEffects(const LightEffectMeasurements& measured) {
+  nlohmann::json effects = nlohmann::json::array();
+  for (const LightEffectMeasurement& m : measured.effects) {
+    effects.push_back({{"effect", m.effect},
+                       {"psnr_with", measured.psnr},
+                       {"psnr_without", m.psnr_without},
+                       {"seconds_a_view_with", m.seconds_with},
+                       {"seconds_a_view_without", m.seconds_without}});
+  }
+  return effects;
+}
+
+void PrintLightEffects(const LightEffectMeasurements& measured) {
+  fmt::print("\n{:<17} {:>8} {:>9} {:>8} {:>16}\n", "effect of light", "with dB", "without",
+             "gain dB", "seconds a view");
+  for (const LightEffectMeasurement& m : measured.effects) {
+    fmt::print("{:<17} {:>8.2f} {:>9.2f} {:>+8.2f} {:>7.2f}, {:>5.2f} without\n", m.effect,
+               measured.psnr, m.psnr_without, measured.psnr - m.psnr_without, m.seconds_with,
+               m.seconds_without);
+  }
+  fmt::print(
+      "of held-out photographs under the light that was found for them, with the same materials\n");
+}
+
 nlohmann::json JsonFromComparison(const TruthComparison& comparison) {
   return {{"views", comparison.views},
           {"found", JsonFromScores(comparison.found)},

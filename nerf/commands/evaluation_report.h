@@ -5,6 +5,7 @@
 
 #include "nerf/model/evaluation.h"
 #include "nerf/pipeline/effect_measurement.h"
+#include "nerf/pipeline/light_effect_measurement.h"
 #include "nerf/pipeline/truth_comparison.h"
 
 namespace nerf {
@@ -18,6 +19,10 @@ void PrintEvaluation(const Evaluation& evaluation);
 //   steps  of each training
 nlohmann::json JsonFromMeasurements(const std::vector<EffectMeasurement>& effects, int steps);
 void PrintMeasurements(const std::vector<EffectMeasurement>& effects, int steps);
+
+// The same of the effects of light, of a run with materials.
+nlohmann::json JsonFromLightEffects(const LightEffectMeasurements& measured);
+void PrintLightEffects(const LightEffectMeasurements& measured);
 
 // The content of truth.json, and the same as a table.
 nlohmann::json JsonFromComparison(const TruthComparison& comparison);

@@ -5,8 +5,12 @@
 #include <memory>
 #include <string>
 
+#include "nerf/base/interrupt.h"
+#include "nerf/base/stopwatch.h"
 #include "nerf/commands/commands.h"
 #include "nerf/commands/light_stage_flags.h"
+#include "nerf/commands/threads.h"
+#include "nerf/synthetic/relightable_folder.h"
 #include "nerf/synthetic/sample_folder.h"
 
 namespace nerf {
@@ -16,6 +20,7 @@ struct SampleArguments {
   LightStageFlags light_stage;
   std::string folder;
   synthetic::SampleOptions options;
+  int relightable = 0;  // lights; 0: another capture
 };
 
 void RunSample(const SampleArguments& arguments) {
@@ -26,6 +31,31 @@ void RunSample(const SampleArguments& arguments) {
       "next: nerf train {}\n",
       arguments.options.views, (folder / "images").string(), (folder / "truth").string(),
       folder.string());
+}
+
+// Of a relightable capture: options that were given replace its own.
+void RunRelightable(const SampleArguments& arguments, const CLI::App& command) {
+  const Stopwatch watch;
+  UseThreads(arguments.options.threads);
+  synthetic::RelightableOptions options;
+  options.lights = arguments.relightable;
+  const auto take = [&](const char* flag, int given, int& own) {
+    if (command.count(flag) > 0) own = given;
+  };
+  take("--views", arguments.options.views, options.views);
+  take("--width", arguments.options.width, options.width);
+  take("--height", arguments.options.height, options.height);
+  take("--samples", arguments.options.samples_per_pixel, options.paths);
+  const auto& stop = StopOnInterrupt();
+  if (!synthetic::WriteRelightable(arguments.folder, options, [&] { return !stop; })) {
+    fmt::print("stopped; the capture in {} is incomplete\n", arguments.folder);
+    throw CLI::RuntimeError(130);
+  }
+  fmt::print(
+      "wrote {} photographs, and {} held-out views with their truth, to {} in {:.1f} s\n"
+      "next: nerf train {} -o RUN --materials, then nerf eval RUN --truth {}\n",
+      options.views, options.test_views, arguments.folder, watch.Seconds(), arguments.folder,
+      arguments.folder);
 }
 
 void AddScenarioOption(CLI::App& command, synthetic::Scenario& scenario) {
@@ -61,6 +91,17 @@ void AddSampleCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--threads", options.threads, "0: all cores")->capture_default_str();
   AddLightStageFlags(*command, arguments->light_stage);
+  command
+      ->add_option("--relightable", arguments->relightable,
+                   "instead of a sample: objects of known materials, photographed under this many "
+                   "lights in turn [1], with truth of materials and relit views; --samples are "
+                   "light paths [64], --views 40, 160x160 pixels")
+      ->expected(0, 1)
+      ->default_str("1")
+      ->check(CLI::Range(1, 3))
+      ->excludes(command->get_option("--light-stage"))
+      ->excludes(command->get_option("--scenario"))
+      ->excludes(command->get_option("--seed"));
   command->footer(
       "Examples:\n"
       "  nerf sample demo                             36 photographs in demo/images\n"
@@ -70,8 +111,13 @@ void AddSampleCommand(CLI::App& app) {
       "  nerf sample far --scenario anti_aliasing     half of the cameras are four times as far "
       "away\n"
       "  nerf sample loose --scenario pose_refinement slightly wrong poses, and the true ones\n"
-      "  nerf sample stage --light-stage 256          one light at a time, for nerf relight");
-  command->callback([arguments, views] {
+      "  nerf sample stage --light-stage 256          one light at a time, for nerf relight\n"
+      "  nerf sample still --relightable              known materials, for nerf train --materials");
+  command->callback([arguments, views, command] {
+    if (command->count("--relightable") > 0) {
+      RunRelightable(*arguments, *command);
+      return;
+    }
     if (views->count() == 0) {
       arguments->options.views = synthetic::DefaultViewCount(arguments->options.scenario);
     }

@@ -241,6 +241,12 @@ std::optional<MaterialsFound> TrainMaterials(const ModelSnapshot& field, const P
                                              const std::atomic<bool>& stop,
                                              const PipelineListener& listener) {
   RequireOneExposure(field.GetConfig());
+  if (data.linearized_photographs > 0) {
+    throw InputError(
+        "{} of the photographs are display-referred (JPEG, PNG) among linear ones (EXR, HDR), so "
+        "their scales differ and no materials are found; use photographs of one kind",
+        data.linearized_photographs);
+  }
   return MaterialTraining(field, posed, data, plan, stop, listener).Run();
 }
 

@@ -189,7 +189,7 @@ class Comparison {
 
   template <class AlbedoOf>
   void Albedo(const AlbedoOf& albedo_of, TruthScores& scores) {
-    constexpr float kOpaque = 0.999f, kDark = 1e-3f;
+    constexpr float kWhole = 0.999f, kDark = 1e-3f;
     std::array<std::vector<double>, 3> ratios;
     std::vector<Image> truths(views_.size());
     double views = 0;
@@ -204,7 +204,7 @@ class Comparison {
       for (std::size_t r = 0; r < view.seen.pixels.size(); ++r) {
         const float* const pixel =
             &truth.pixels[truth.channels * static_cast<std::size_t>(view.seen.pixels[r])];
-        if (truth.channels > 3 && pixel[kAlphaChannel] < kOpaque) continue;
+        if (truth.channels > 3 && pixel[kAlphaChannel] < kWhole) continue;
         for (int c = 0; c < 3; ++c) {
           const float found = albedo.template data_ptr<float>()[3 * r + c];
           if (pixel[c] > kDark && found > kDark) {

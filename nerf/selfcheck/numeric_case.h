@@ -48,6 +48,8 @@ std::vector<NumericCase> NetworkCases();
 std::vector<NumericCase> CameraCases();
 std::vector<NumericCase> EngineCases();
 std::vector<NumericCase> GaussianCases();
+std::vector<NumericCase> ShadingCases();
+std::vector<NumericCase> ShadowCases();
 
 // The largest absolute value of the errors added; NaN counts as infinite.
 class WorstError {

@@ -8,7 +8,7 @@ std::vector<NumericCase> NumericCases() {
   std::vector<NumericCase> cases;
   for (const auto& of_one_layer :
        {CompositingCases, CompositingGradientCases, SamplingCases, EncodingCases, NetworkCases,
-        CameraCases, EngineCases, GaussianCases}) {
+        CameraCases, EngineCases, GaussianCases, ShadingCases, ShadowCases}) {
     for (NumericCase& numeric_case : of_one_layer()) cases.push_back(std::move(numeric_case));
   }
   return cases;

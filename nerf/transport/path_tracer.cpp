@@ -98,7 +98,7 @@ bool PathTracer::IsUnoccluded(const Vertex& vertex, const Vector3d& direction, d
 // importance sampling.
 Color PathTracer::DirectLight(const Vertex& vertex, UniformStream& random,
                               std::int64_t& rays) const {
-  const Brdf& brdf = *vertex.hit.item->brdf;
+  const Brdf& brdf = *BrdfAt(*vertex.hit.item, vertex.hit.x_in_world);
   Color sum = Color::Zero();
   const auto add = [&](const Vector3d& to_light, double distance, const Color& light) {
     const Vector3d w_i = vertex.ToSurface(to_light);
@@ -149,14 +149,15 @@ Color PathTracer::Radiance(Ray ray, UniformStream& random, std::int64_t& rays) c
     if (const auto lit = exitance_.find(hit->item); lit != exitance_.end()) {
       radiance += throughput * lit->second.Radiance(hit->x_in_world, vertex.w_o.z());
     }
-    if (!hit->item->brdf) return radiance;
+    const Brdf* const brdf = BrdfAt(*hit->item, hit->x_in_world);
+    if (brdf == nullptr) return radiance;
     radiance += throughput * DirectLight(vertex, random, rays);
 
     // The next ray samples the environment, emitters and indirect light by the BRDF.
     const bool needs_ray =
         depth < terms_.bounces || has_emitters_ || (environment && terms_.shadows);
     if (!needs_ray && !environment) return radiance;
-    const auto sample = hit->item->brdf->Sample(vertex.w_o, random.Next3());
+    const auto sample = brdf->Sample(vertex.w_o, random.Next3());
     if (!sample) return radiance;
     throughput *= sample->f * (sample->w_i.z() / sample->pdf);
     brdf_pdf = sample->pdf;

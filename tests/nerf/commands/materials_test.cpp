@@ -144,6 +144,16 @@ TEST_F(MaterialsCommand, ChannelsEditsAndLights) {
   EXPECT_THAT(empty.output, HasSubstr("holds nothing of the surface"));
 }
 
+TEST_F(MaterialsCommand, EffectsOfLightAreMeasuredWithThoseOfTheField) {
+  ASSERT_EQ(Materials("--set shadows=on --set bounces=on --set specular=on").exit_status, 0);
+  const auto measured = RunNerf("eval " + Path("run") + " --effects --effects-steps 10");
+  ASSERT_EQ(measured.exit_status, 0) << measured.output;
+  for (const char* effect :
+       {"view_dependence", "effect of light", "shadows", "bounces", "specular"}) {
+    EXPECT_THAT(measured.output, HasSubstr(effect));
+  }
+}
+
 TEST_F(MaterialsCommand, TruthOfOtherViewsOrOfAnotherSizeIsNamed) {
   ASSERT_EQ(Materials().exit_status, 0);
   const auto compare = [](const std::string& folder) {
