@@ -56,9 +56,10 @@ std::optional<Eigen::Vector3d> ReadVector(const JsonFields& frame, const char* k
   return vector;
 }
 
-NamedLight ReadLight(const JsonFields& frame) {
+NamedLight ReadLight(const nlohmann::json& json, const JsonFields& frame) {
   NamedLight light;
-  light.name = frame.String("light").value_or("");
+  // Other programs may mean something else by the key.
+  if (json.contains("light") && json["light"].is_string()) light.name = json["light"];
   light.direction = ReadVector(frame, "light_direction");
   if (light.direction) {
     if (light.direction->isZero() || !light.direction->allFinite()) {
@@ -109,7 +110,7 @@ class Reader {
       const std::string name = NameFromPath(frame.String("source_name").value_or(path));
       RequireNew(frame_of_path, path, i, frame.Where("file_path"));
       RequireNew(frame_of_name, name, i, frame.Where("source_name"));
-      AddFrame(file, frame, fields, path, name, split);
+      AddFrame(file, (*frames)[i], frame, fields, path, name, split);
     }
     MarkSplits(fields);
   }
@@ -131,8 +132,9 @@ class Reader {
   }
 
  private:
-  void AddFrame(const fs::path& file, const JsonFields& frame, const JsonFields& global,
-                const std::string& path_in_file, const std::string& name, Split split) {
+  void AddFrame(const fs::path& file, const nlohmann::json& json, const JsonFields& frame,
+                const JsonFields& global, const std::string& path_in_file, const std::string& name,
+                Split split) {
     PosedImage image;
     image.name = name;
     image.split = split;
@@ -142,7 +144,7 @@ class Reader {
       ++scaled_poses_;
       scale_ = scaled.scale;
     }
-    image.light = ReadLight(frame);
+    image.light = ReadLight(json, frame);
     if (const auto mask = frame.String("mask_path")) FindMask(file.parent_path() / *mask, image);
     // Already in an earlier file: train comes first, and a training image cannot be held out.
     if (!name_of_path_.emplace(path_in_file, name).second) return;

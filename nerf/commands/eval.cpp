@@ -52,21 +52,27 @@ Split SplitFromName(const std::string& name) {
   return name == "validation" ? Split::kValidation : Split::kTest;
 }
 
-// Those of a run with materials.
-std::optional<LightEffectMeasurements> LightEffectsOf(const OpenedRun& run,
-                                                      const EvalArguments& arguments) {
-  if (!fs::exists(MaterialsPath(arguments.run))) return std::nullopt;
+// The materials of a run that has some, under one light: of several it is not known which shone on
+// a held-out photograph.
+std::optional<Materials> MaterialsOfOneLight(const fs::path& run) {
+  if (!fs::exists(MaterialsPath(run))) return std::nullopt;
+  Materials materials = ReadMaterials(MaterialsPath(run));
+  if (materials.surface.lights.size() == 1) return materials;
+  spdlog::warn("the effects of light are not measured: the run has {} lights",
+               materials.surface.lights.size());
+  return std::nullopt;
+}
+
+LightEffectMeasurements LightEffectsOf(const OpenedRun& run, const Materials& materials) {
   std::optional<ProgressLine> progress;
-  return MeasureLightEffects(run, ReadMaterials(MaterialsPath(arguments.run)),
-                             [&](std::size_t done, std::size_t of) {
-                               if (!progress) {
-                                 progress.emplace("relighting", static_cast<std::int64_t>(of));
-                               }
-                               progress->Update(static_cast<std::int64_t>(done));
-                             });
+  return MeasureLightEffects(run, materials, [&](std::size_t done, std::size_t of) {
+    if (!progress) progress.emplace("relighting", static_cast<std::int64_t>(of));
+    progress->Update(static_cast<std::int64_t>(done));
+  });
 }
 
 void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const fs::path& output) {
+  const std::optional<Materials> materials = MaterialsOfOneLight(arguments.run);
   TrainingDisplay display;
   std::optional<ProgressLine> progress;
   const std::vector<EffectMeasurement> effects = MeasureEffects(
@@ -77,7 +83,8 @@ void EvaluateEffects(const OpenedRun& run, const EvalArguments& arguments, const
       });
   progress.reset();
   nlohmann::json result = JsonFromMeasurements(effects, arguments.effects_steps);
-  const auto of_light = LightEffectsOf(run, arguments);
+  std::optional<LightEffectMeasurements> of_light;
+  if (materials) of_light = LightEffectsOf(run, *materials);
   if (of_light) result["light"] = JsonFromLightEffects(*of_light);
   WriteFileAtomically(output / "effects_worth.json", result.dump(2) + "\n");
   if (arguments.json) {

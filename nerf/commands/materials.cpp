@@ -54,6 +54,13 @@ void RunMaterials(MaterialsArguments& arguments) {
   UseThreads(arguments.threads);
   MaterialRequest& request = arguments.request;
   request.run = arguments.run;
+  if (request.resume && (arguments.steps || request.time_budget > 0 || !arguments.lights.empty() ||
+                         !arguments.environment.empty() || !arguments.photographs.empty() ||
+                         !arguments.assignments.empty())) {
+    throw InputError(
+        "--resume continues a fit as it was planned; omit --steps, --time-budget, --environment, "
+        "--lights, --photographs and --set");
+  }
   request.photographs = arguments.photographs;
   request.options = OptionsOf(arguments.assignments);
   if (arguments.steps) request.options.steps = *arguments.steps;

@@ -3,6 +3,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "nerf/base/atomic_file.h"
@@ -42,6 +44,9 @@ std::vector<PlannedLight> LightsOf(const RelightRunArguments& arguments) {
                        light.name);
     }
     light.rotate += arguments.rotate;
+    if (std::ranges::count(lights, light.name, &PlannedLight::name) > 1) {
+      throw InputError("two lights are named {}, which names a folder; rename one", light.name);
+    }
   }
   return lights;
 }
@@ -107,7 +112,8 @@ class Show {
 
   RelitBackground BackgroundOf(const PlannedLight& light) const {
     if (!arguments_.shows_map || !light.environment) return {};
-    return {&*light.environment, TurnedMap(scene_.normalized_from_world.rotation, light.rotate)};
+    return {&*light.environment, TurnedMap(scene_.normalized_from_world.rotation, light.rotate),
+            static_cast<float>(std::exp2(light.exposure))};
   }
 
   void Shine(const PlannedLight& light) {

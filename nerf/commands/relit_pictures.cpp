@@ -20,7 +20,7 @@ std::vector<Eigen::Vector3f> Behind(const DepthMap& depth, const RelitBackground
     if (!direction) continue;
     const Eigen::Vector3d in_map =
         background.map_from_frame * depth.grid_from_camera.linear() * *direction;
-    radiance[p] = background.map->Radiance(in_map).matrix().cast<float>();
+    radiance[p] = background.gain * background.map->Radiance(in_map).matrix().cast<float>();
   }
   return radiance;
 }

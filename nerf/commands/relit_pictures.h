@@ -24,6 +24,7 @@ LookedAt LookAt(const OpenedRun& run, const Relighter& relighter, const Shot& sh
 struct RelitBackground {
   const EnvironmentMap* map = nullptr;  // null: transparent, or as the field shows it
   Eigen::Matrix3d map_from_frame = Eigen::Matrix3d::Identity();
+  float gain = 1;
 };
 
 // The view under a light, linear, 4 channels: straight colour and opacity. Without a map, what is

@@ -208,11 +208,10 @@ void TrainingDisplay::Show(const LightEffectsDecided& event) {
 
 void TrainingDisplay::Show(const MaterialsFound& event) {
   progress_.reset();
-  Print(
-      "{} materials of a surface of {} vertices under {} light{}: {} steps in {:.1f} s, {:.2f} "
-      "dB\n",
-      event.finished ? "found" : "stopped, kept", event.vertices, event.lights,
-      event.lights == 1 ? "" : "s", event.steps, event.seconds, event.psnr);
+  Print("{} materials of a surface of {} vertices under {} light{}: {} steps in {:.1f} s{}\n",
+        event.finished ? "found" : "stopped, kept", event.vertices, event.lights,
+        event.lights == 1 ? "" : "s", event.steps, event.seconds,
+        event.psnr > 0 ? fmt::format(", {:.2f} dB", event.psnr) : "");
   if (event.is_relative) {
     Print(
         "a light is not known, so its brightness and that of the materials are relative: its mean "

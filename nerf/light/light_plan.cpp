@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kUnknown[] = "unknown";
+constexpr double kBrightest = 1e12;  // W / m^2, W, cd or lm: products stay finite in float
 
 void RequireKnownKeys(const nlohmann::json& object, const JsonFields& fields,
                       std::initializer_list<std::string_view> known) {
@@ -72,8 +73,8 @@ DirectionalLight SunFrom(const nlohmann::json& json, const std::string& where) {
   } else {
     sun.irradiance = Color::Constant(fields.Number("irradiance").value_or(std::numbers::pi));
   }
-  if ((sun.irradiance < 0).any()) {
-    throw InputError("{} must not be negative", fields.Where("irradiance"));
+  if ((sun.irradiance < 0).any() || (sun.irradiance > kBrightest).any()) {
+    throw InputError("{} must be 0 to {}", fields.Where("irradiance"), kBrightest);
   }
   sun.irradiance *= *ColorOfLight(ColorName(fields));
   return sun;
@@ -91,7 +92,9 @@ PointLight PointFrom(const nlohmann::json& json, const std::string& where) {
     const auto value = fields.Number(unit);
     if (!value) continue;
     if (watts) throw InputError("{}: give one of watts, candela and lumens", fields.Where(unit));
-    if (*value < 0) throw InputError("{} must not be negative", fields.Where(unit));
+    if (*value < 0 || *value > kBrightest) {
+      throw InputError("{} must be 0 to {}", fields.Where(unit), kBrightest);
+    }
     watts = std::string_view(unit) == "watts" ? *value
             : std::string_view(unit) == "candela"
                 ? WattsFromLumens(LumensFromCandela(*value), spectrum)
@@ -117,6 +120,10 @@ PlannedLight LightFrom(const std::string& name, const nlohmann::json& json,
                        const std::string& where, const fs::path& folder) {
   const JsonFields fields(json, where);
   RequireKnownKeys(json, fields, {"environment", "rotate", "exposure", "suns", "points"});
+  if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos) {
+    throw InputError("{} is no name for a light, which names a folder; use letters",
+                     where.substr(0, where.size() - 1));
+  }
   PlannedLight light;
   light.name = name;
   light.rotate = fields.Number("rotate").value_or(0);

@@ -1,5 +1,6 @@
 #include "nerf/model/materials_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <exception>
@@ -173,7 +174,10 @@ void WriteMaterials(const Materials& materials, const std::filesystem::path& fil
   }
   if (fit != nullptr) {
     checkpoint.meta["interrupted"] = {{"planned_seconds", fit->planned_seconds},
-                                      {"planned_steps", fit->planned_steps}};
+                                      {"planned_steps", fit->planned_steps},
+                                      {"is_known", fit->is_known},
+                                      {"light_of", fit->light_of},
+                                      {"photographs", fit->photographs}};
     for (const auto& [name, tensor] : fit->state) checkpoint.tensors[kFit + name] = tensor;
   }
   WriteCheckpoint(file, checkpoint);
@@ -195,6 +199,14 @@ std::optional<InterruptedMaterials> ReadInterruptedMaterials(const std::filesyst
     InterruptedMaterials fit;
     fit.planned_seconds = meta.at("planned_seconds").get<double>();
     fit.planned_steps = meta.at("planned_steps").get<std::int64_t>();
+    fit.is_known = meta.at("is_known").get<std::vector<bool>>();
+    fit.light_of = meta.at("light_of").get<std::map<std::string, std::int64_t>>();
+    fit.photographs = meta.at("photographs").get<std::string>();
+    const std::size_t lights = checkpoint.meta.at("lights").size();
+    const bool names_lights = std::ranges::all_of(fit.light_of, [&](const auto& item) {
+      return item.second >= 0 && item.second < static_cast<std::int64_t>(lights);
+    });
+    if (fit.is_known.size() != lights || !names_lights) throw InputError("its lights differ");
     const std::string prefix = kFit;
     for (const auto& [name, tensor] : checkpoint.tensors) {
       if (name.starts_with(prefix)) fit.state[name.substr(prefix.size())] = tensor;

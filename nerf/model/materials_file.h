@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "nerf/config/material_options.h"
 #include "nerf/relight/relightable_surface.h"
@@ -27,6 +28,11 @@ struct InterruptedMaterials {
   // Its plan: the seconds of the whole fit, or where these are 0 its steps.
   double planned_seconds = 0;
   std::int64_t planned_steps = 0;
+  // The lights on photographs, as they were planned: which of the lights are known, and the light
+  // of each photograph by its name.
+  std::vector<bool> is_known;
+  std::map<std::string, std::int64_t> light_of;
+  std::string photographs;  // the transforms.json of other photographs; empty: those of the run
 };
 
 // The mesh is not stored: it is where the distance is 0.

@@ -46,11 +46,10 @@ LightEffects DecideLightEffects(const MaterialOptions& options, const ExtractedS
   const double blocked = effects.blocked.value_or(0);
   effects.shadows = IsOn(options.shadows, blocked >= kLeastBlocked);
   effects.bounces = effects.shadows && IsOn(options.bounces, blocked >= kLeastBounced);
-  if (effects.shadows) AddShadows(surface, rays, effects.bounces, lit);
-  // A lamp without shadows shines on everything.
-  if (!effects.shadows && lit.lamp_visibility.defined()) {
-    lit.lamp_visibility.fill_(1);
-    lit.vertex_lamp_visibility.fill_(1);
+  if (effects.shadows) {
+    AddShadows(surface, rays, effects.bounces, lit);
+  } else {
+    RemoveShadows(lit);
   }
   if (options.specular == LightEffectChoice::kAuto && with_trial) {
     effects.specular_db = PsnrOfTrial(lit, options, box, resolution, false, seed) -

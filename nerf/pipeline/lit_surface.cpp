@@ -85,4 +85,10 @@ void AddShadows(const ExtractedSurface& surface, const MeshRays& rays, bool has_
   lit.has_bounces = has_bounces;
 }
 
+void RemoveShadows(LitSurface& lit) {
+  if (!lit.lamp_visibility.defined()) return;
+  lit.lamp_visibility.fill_(1);
+  lit.vertex_lamp_visibility.fill_(1);
+}
+
 }  // namespace nerf

@@ -38,4 +38,7 @@ LitSurface Observe(const Model& field, const Dataset& data, const ExtractedSurfa
 void AddShadows(const ExtractedSurface& surface, const MeshRays& rays, bool has_bounces,
                 LitSurface& lit);
 
+// Without shadows a lamp shines on everything.
+void RemoveShadows(LitSurface& lit);
+
 }  // namespace nerf

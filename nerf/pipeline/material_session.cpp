@@ -14,10 +14,10 @@ namespace {
 // The least time for a surface and a fit, seconds.
 constexpr double kLeastSeconds = 1;
 
-// The photographs of the request, all of them to be used where they are others than the run's.
-PosedImages PosedOf(const MaterialRequest& request) {
-  if (request.photographs.empty()) return sfm::ReadTransformsJson(PosesPath(request.run));
-  PosedImages posed = sfm::ReadTransformsJson(request.photographs);
+// The photographs of a run, or others, all of them to be used.
+PosedImages PosedFrom(const std::filesystem::path& photographs, const std::filesystem::path& run) {
+  if (photographs.empty()) return sfm::ReadTransformsJson(PosesPath(run));
+  PosedImages posed = sfm::ReadTransformsJson(photographs);
   for (PosedImage& image : posed.images) {
     if (image.split == Split::kUnspecified) image.split = Split::kTrain;
   }
@@ -32,11 +32,18 @@ std::optional<MaterialsFound> FindMaterials(const MaterialRequest& request, cons
   const OpenedRun run = OpenRun(request.run);
   const Config& config = run.model->GetConfig();
   RequireOneExposure(config);
-  if (request.resume && !ReadInterruptedMaterials(MaterialsPath(request.run))) {
-    throw InputError("{}: its fit has ended; find materials anew without --resume",
-                     MaterialsPath(request.run).string());
+  const std::filesystem::path file = MaterialsPath(request.run);
+  std::filesystem::path photographs = request.photographs;
+  if (request.resume) {
+    const Materials begun = ReadMaterials(file);
+    const auto interrupted = ReadInterruptedMaterials(file);
+    if (!interrupted || begun.field_step != run.model->Step()) {
+      throw InputError("{}: {}; find materials anew without --resume", file.string(),
+                       interrupted ? "is of an earlier state of the field" : "its fit has ended");
+    }
+    photographs = interrupted->photographs;
   }
-  const PosedImages posed = PosedOf(request);
+  const PosedImages posed = PosedFrom(photographs, request.run);
   const Dataset data = LoadPhotographs(posed, config, run.model->Scene().normalized_from_world,
                                        request.run, listener);
   MaterialPlan plan;
@@ -44,6 +51,7 @@ std::optional<MaterialsFound> FindMaterials(const MaterialRequest& request, cons
   plan.lights = request.lights;
   plan.run = request.run;
   plan.resume = request.resume;
+  if (!photographs.empty()) plan.photographs = std::filesystem::absolute(photographs).string();
   plan.checkpoint_every = config.train.checkpoint_every;
   if (request.time_budget > 0) {
     plan.seconds = std::max(kLeastSeconds, request.time_budget - watch.Seconds());

@@ -16,7 +16,7 @@ struct MaterialRequest {
   double time_budget = 0;             // seconds of the command; 0: by options.steps
   MaterialOptions options;
   std::optional<LightPlan> lights;
-  bool resume = false;
+  bool resume = false;  // as it was planned; other members but `run` are ignored
 };
 
 // All of `nerf materials`: TrainMaterials of the field of a run, from its photographs, or from

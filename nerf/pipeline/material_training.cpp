@@ -12,6 +12,7 @@
 #include "nerf/model/materials_file.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/light_effects.h"
+#include "nerf/pipeline/material_fitting.h"
 #include "nerf/relight/environment_light.h"
 
 namespace nerf {
@@ -20,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFinerThanSurface = 2;  // the material field, than the cells of the surface
-constexpr std::int64_t kStepsBetweenEvents = 20;
 constexpr int kEnvironmentHeight = 32;
 constexpr double kFileSeconds = 1;  // for the files
 constexpr double kLeastFitSeconds = 1;
@@ -29,51 +29,6 @@ constexpr double kLeastToTry = 40;  // seconds, in which a trial takes a fractio
 Eigen::AlignedBox3d BoxOf(const ScalarGrid& grid) {
   return {grid.origin, grid.PositionOf(grid.size.x() - 1, grid.size.y() - 1, grid.size.z() - 1)};
 }
-
-// A fit with its time or its steps.
-class MaterialFitting {
- public:
-  //   steps, seconds  of the whole fit; seconds 0: by steps
-  //   spent           seconds, before
-  MaterialFitting(MaterialFit& fit, std::int64_t steps, double seconds, double spent)
-      : fit_(fit), steps_(steps), seconds_(seconds), spent_(spent) {}
-
-  double Seconds() const { return spent_ + watch_.Seconds(); }
-  double PlannedSeconds() const { return seconds_; }
-  std::int64_t PlannedSteps() const { return steps_; }
-  double Psnr() const { return psnr_; }
-
-  // False where it was stopped.
-  //   save  called after `checkpoint_every` steps
-  bool Run(std::int64_t checkpoint_every, const std::function<void()>& save,
-           const std::atomic<bool>& stop, const PipelineListener& listener) {
-    double sum = 0;
-    std::int64_t summed = 0;
-    for (double fraction = Fraction(); fraction < 1; fraction = Fraction()) {
-      if (stop) return false;
-      sum += fit_.Step(fraction);
-      if (checkpoint_every > 0 && fit_.Steps() % checkpoint_every == 0) save();
-      if (++summed < kStepsBetweenEvents) continue;
-      psnr_ = -10 * std::log10(sum / static_cast<double>(summed));
-      listener(MaterialsStepped{fit_.Steps(), Fraction(), psnr_});
-      sum = 0;
-      summed = 0;
-    }
-    return true;
-  }
-
- private:
-  double Fraction() const {
-    if (seconds_ > 0) return Seconds() / seconds_;
-    return static_cast<double>(fit_.Steps()) / static_cast<double>(steps_);
-  }
-
-  MaterialFit& fit_;
-  std::int64_t steps_;
-  double seconds_, spent_;
-  double psnr_ = 0;
-  Stopwatch watch_;
-};
 
 class MaterialTraining {
  public:
@@ -87,7 +42,7 @@ class MaterialTraining {
         listener_(listener),
         frame_(field.Scene().normalized_from_world),
         seed_(field.GetConfig().train.seed),
-        lights_(LightsOn(posed, plan.lights, frame_, plan.options.directions)) {}
+        posed_(posed) {}
 
   std::optional<MaterialsFound> Run() {
     std::optional<InterruptedMaterials> interrupted;
@@ -97,6 +52,8 @@ class MaterialTraining {
       found_ = ReadMaterials(file);
       if (!interrupted) return Result(true);
     }
+    lights_ = interrupted ? LightsBefore(*interrupted)
+                          : LightsOn(posed_, plan_.lights, frame_, plan_.options.directions);
     LitSurface lit;
     if (interrupted) {
       lit = Relit();
@@ -130,6 +87,15 @@ class MaterialTraining {
             surface.lights.size(),
             is_relative,
             plan_.run};
+  }
+
+  // Those of the fit that was interrupted, as they were planned.
+  PhotographLights LightsBefore(const InterruptedMaterials& interrupted) const {
+    PhotographLights lights{found_.surface.lights, interrupted.light_of};
+    for (std::size_t g = 0; g < lights.groups.size(); ++g) {
+      if (!interrupted.is_known[g]) lights.groups[g].environment = torch::Tensor();
+    }
+    return lights;
   }
 
   double SecondsOfFit() const {
@@ -186,7 +152,11 @@ class MaterialTraining {
     const MeshRays rays(surface.mesh);
     LitSurface lit =
         Observe(field_.GetModel(), data_, surface, rays, lights_, found_.options.directions);
-    if (found_.surface.has_shadows) AddShadows(surface, rays, found_.surface.has_bounces, lit);
+    if (found_.surface.has_shadows) {
+      AddShadows(surface, rays, found_.surface.has_bounces, lit);
+    } else {
+      RemoveShadows(lit);
+    }
     return lit;
   }
 
@@ -200,13 +170,22 @@ class MaterialTraining {
     InterruptedMaterials interrupted;
     interrupted.planned_seconds = fitting.PlannedSeconds();
     interrupted.planned_steps = fitting.PlannedSteps();
+    for (const LightGroup& light : lights_.groups) interrupted.is_known.push_back(light.IsKnown());
+    interrupted.light_of = lights_.group_of;
+    interrupted.photographs = plan_.photographs;
     fit.AddTo(interrupted.state);
     WriteMaterials(found_, MaterialsPath(plan_.run), finished ? nullptr : &interrupted);
+    if (finished) WriteMaps(environments);
+  }
+
+  // Of each light that is not a dark room.
+  void WriteMaps(const torch::Tensor& environments) const {
     for (std::size_t g = 0; g < found_.surface.lights.size(); ++g) {
+      const torch::Tensor environment = environments[static_cast<std::int64_t>(g)];
+      if (environment.abs().max().item<float>() == 0) continue;
       const bool is_only = found_.surface.lights.size() == 1;
       WriteImage(EnvironmentPath(plan_.run, is_only ? "" : LightName(g)),
-                 EnvironmentImage(environments[static_cast<std::int64_t>(g)], kEnvironmentHeight,
-                                  MapFromFrame(frame_.rotation)));
+                 EnvironmentImage(environment, kEnvironmentHeight, MapFromFrame(frame_.rotation)));
     }
   }
   std::string LightName(std::size_t g) const {
@@ -221,6 +200,7 @@ class MaterialTraining {
   const PipelineListener& listener_;
   const SceneNormalization& frame_;
   std::uint64_t seed_;
+  const PosedImages& posed_;
   PhotographLights lights_;
   Stopwatch watch_;
   Materials found_;
@@ -236,17 +216,20 @@ void RequireOneExposure(const Config& config) {
       "use photographs of one exposure, or, where they are, --effects -exposure");
 }
 
+void RequireOneEncoding(const Dataset& data) {
+  if (data.linearized_photographs == 0) return;
+  throw InputError(
+      "{} of the photographs are display-referred (JPEG, PNG) among linear ones (EXR, HDR), so "
+      "their scales differ and no materials are found; use photographs of one kind",
+      data.linearized_photographs);
+}
+
 std::optional<MaterialsFound> TrainMaterials(const ModelSnapshot& field, const PosedImages& posed,
                                              const Dataset& data, const MaterialPlan& plan,
                                              const std::atomic<bool>& stop,
                                              const PipelineListener& listener) {
   RequireOneExposure(field.GetConfig());
-  if (data.linearized_photographs > 0) {
-    throw InputError(
-        "{} of the photographs are display-referred (JPEG, PNG) among linear ones (EXR, HDR), so "
-        "their scales differ and no materials are found; use photographs of one kind",
-        data.linearized_photographs);
-  }
+  RequireOneEncoding(data);
   return MaterialTraining(field, posed, data, plan, stop, listener).Run();
 }
 

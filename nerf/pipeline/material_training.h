@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "nerf/light/light_plan.h"
 #include "nerf/model/snapshot.h"
@@ -20,7 +21,9 @@ struct MaterialPlan {
   double seconds = 0;                 // of all of it; 0: by options.steps
   std::int64_t checkpoint_every = 0;  // steps; 0: only at the end
   std::filesystem::path run;          // RUN/materials.nerf, and a map of each light
-  bool resume = false;                // go on with RUN/materials.nerf, where it is of this field
+  std::string photographs = {};       // the transforms.json of `posed`; empty: that of the run
+  // Go on with RUN/materials.nerf, where it is of this field, as it was planned then.
+  bool resume = false;
 };
 
 // Takes a field apart: its surface, the materials of the surface, and the lights on it, from the
@@ -35,7 +38,8 @@ std::optional<MaterialsFound> TrainMaterials(const ModelSnapshot& field, const P
                                              const std::atomic<bool>& stop,
                                              const PipelineListener& listener);
 
-// Throws InputError where materials cannot be found with these options of a field.
+// Throws InputError where materials cannot be found: photographs differ in exposure, or in kind.
 void RequireOneExposure(const Config& config);
+void RequireOneEncoding(const Dataset& data);
 
 }  // namespace nerf

@@ -66,11 +66,12 @@ LightKey KeyOf(const PosedImage& image, const std::optional<LightPlan>& plan,
   return {std::nullopt, image.light.direction ? WithoutName(image.light) : image.light};
 }
 
-LightGroup GroupOf(const LightKey& key, const std::optional<LightPlan>& plan,
+//   planned  those of the plan
+LightGroup GroupOf(const LightKey& key, const std::vector<LightGroup>& planned,
                    const SceneNormalization& frame, int directions) {
   LightGroup group;
   if (key.planned) {
-    group = LightInFrame(plan->lights[static_cast<std::size_t>(*key.planned)], frame, directions);
+    group = planned[static_cast<std::size_t>(*key.planned)];
   } else {
     group.name = key.named.name;
     if (key.named.direction) group.environment = torch::zeros({directions, 3});
@@ -111,6 +112,10 @@ PhotographLights LightsOn(const PosedImages& posed, const std::optional<LightPla
                           const SceneNormalization& frame, int directions) {
   const bool some_have_directions = std::ranges::any_of(
       posed.images, [](const PosedImage& image) { return image.light.direction.has_value(); });
+  std::vector<LightGroup> planned;
+  for (std::size_t i = 0; plan && i < plan->lights.size(); ++i) {
+    planned.push_back(LightInFrame(plan->lights[i], frame, directions));
+  }
   PhotographLights lights;
   std::vector<LightKey> keys;
   for (const PosedImage& image : posed.images) {
@@ -119,7 +124,7 @@ PhotographLights LightsOn(const PosedImages& posed, const std::optional<LightPla
     const auto known = std::ranges::find(keys, key);
     lights.group_of[image.name] = known - keys.begin();
     if (known != keys.end()) continue;
-    lights.groups.push_back(GroupOf(key, plan, frame, directions));
+    lights.groups.push_back(GroupOf(key, planned, frame, directions));
     keys.push_back(std::move(key));
   }
   return lights;

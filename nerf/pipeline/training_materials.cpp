@@ -19,11 +19,14 @@ constexpr double kLeastSeconds = 1;
 void PrepareLights(const std::filesystem::path& lights, const PreparedScene& scene,
                    const std::filesystem::path& run) {
   constexpr int kAnyDirections = 16;
-  RemoveAll(LightsPath(run));
   std::optional<LightPlan> plan;
   if (!lights.empty()) plan = ReadLightPlan(lights);
   LightsOn(scene.posed, plan, scene.normalized_from_world, kAnyDirections);
-  if (plan) CopyLightPlan(lights, LightsPath(run));
+  if (plan) {
+    CopyLightPlan(lights, LightsPath(run));
+  } else {
+    RemoveAll(LightsPath(run));
+  }
 }
 
 bool MaterialsAfterTraining(const Trainer& trainer, const PosedImages& posed, const Dataset& data,
@@ -37,7 +40,9 @@ bool MaterialsAfterTraining(const Trainer& trainer, const PosedImages& posed, co
   plan.checkpoint_every = config.train.checkpoint_every;
   if (std::filesystem::exists(LightsPath(run))) plan.lights = ReadLightPlan(LightsPath(run));
   if (const double budget = config.train.time_budget; budget > 0) {
-    plan.seconds = std::max(kLeastSeconds, budget - trainer.SpentSeconds());
+    // Of a resumed run, it is not known how long Gaussians took.
+    const double share = config.materials->share * budget;
+    plan.seconds = std::max(kLeastSeconds, std::min(share, budget - trainer.SpentSeconds()));
   }
   const auto field = ModelSnapshot::Copy(trainer.GetModel(), trainer.Steps());
   const std::optional<MaterialsFound> found =

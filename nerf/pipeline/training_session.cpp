@@ -16,6 +16,7 @@
 #include "nerf/model/refined_poses.h"
 #include "nerf/model/run_folder.h"
 #include "nerf/pipeline/budget_plan.h"
+#include "nerf/pipeline/material_training.h"
 #include "nerf/pipeline/representation_training.h"
 #include "nerf/pipeline/training_materials.h"
 #include "nerf/pipeline/training_picture.h"
@@ -59,7 +60,7 @@ void TrainingSession::CheckRunFolder() const {
         "{}: already contains a run; use --resume to continue it, or choose another folder with -o",
         run.string());
   }
-  for (const fs::path& file : {PosesPath(run), MetricsPath(run)}) {
+  for (const fs::path& file : {PosesPath(run), MetricsPath(run), LightsPath(run)}) {
     if (!fs::exists(file) || fs::exists(ConfigPath(run))) continue;
     throw InputError(
         "{}: already exists and was not written by nerf train; choose another folder with -o",
@@ -82,7 +83,7 @@ void TrainingSession::RequireValidation() const {
 double TrainingSession::SpentSeconds() const {
   const double budget = config_.train.time_budget;
   if (budget == 0) return watch_.Seconds();
-  return std::min(watch_.Seconds() + kPictureSeconds, budget / 2);
+  return std::min(watch_.Seconds() + kPictureSeconds, RadianceSeconds(config_) / 2);
 }
 
 // For photographs and films whose poses are not found yet.
@@ -131,6 +132,7 @@ void TrainingSession::ChooseResolution() {
 void TrainingSession::PrepareCapture() {
   config_ = ConfigWithDecisions(request_.preset);
   CheckRunFolder();
+  if (!request_.lights.empty()) ReadLightPlan(request_.lights);  // errors before poses are found
   EstimateWait();  // fails before a run folder is created
   scene_ = PrepareScene(request_.input, request_.run, config_.data, listener_);
   RequireValidation();
@@ -187,12 +189,15 @@ void TrainingSession::DecideEffects() {
 }
 
 void TrainingSession::PlanTimeBudget() {
-  if (config_.materials) RequireOneExposure(config_);
+  if (config_.materials) {
+    RequireOneExposure(config_);
+    RequireOneEncoding(data_);
+  }
   const double spent = SpentSeconds(), budget = config_.train.time_budget;
-  if (budget > 0 && spent == budget / 2) {
+  if (budget > 0 && spent == RadianceSeconds(config_) / 2) {
     listener_(Warning{
         fmt::format("{} of the time budget were spent before training; training still gets {}",
-                    FormatSeconds(watch_.Seconds()), FormatSeconds(budget / 2))});
+                    FormatSeconds(watch_.Seconds()), FormatSeconds(RadianceSeconds(config_) / 2))});
   }
   trainer_ = std::make_unique<Trainer>(config_, facts_, data_, request_.run, spent);
   if (budget == 0 || request_.preset_is_given) return;

@@ -52,7 +52,9 @@ TruthFolder FromTransforms(const fs::path& file, const Maps& maps) {
       const JsonFields light(item.value(), fields.Where("lights." + item.key()) + ".");
       const auto map = light.String("file");
       if (!map) throw InputError("{} is missing", light.Where("file"));
-      truth.lights[item.key()] = {maps.Find({*map}), light.Number("png_exposure").value_or(1)};
+      const double gain = light.Number("png_exposure").value_or(1);
+      if (!(gain > 0)) throw InputError("{} must be above 0", light.Where("png_exposure"));
+      truth.lights[item.key()] = {maps.Find({*map}), gain};
     }
   }
   const nlohmann::json* frames = fields.Array("frames");

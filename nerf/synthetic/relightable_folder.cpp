@@ -30,7 +30,7 @@ constexpr char kRelightableMark[] = "relightable.txt";
 constexpr char kRelightableText[] =
     "A capture of nerf sample --relightable: the next one here replaces it.\n";
 constexpr const char* kFolders[] = {"train", "test", "gt", "environments"};
-constexpr int kPointsAcross = 4;  // in a pixel
+constexpr int kPoints = 16;  // in a pixel
 constexpr int kMapHeight = 64;
 constexpr double kCameraDistance = 3.2, kFieldOfView = 40;  // scene units, degrees
 const Vector3d kCentre(0, 0, 0.22);
@@ -122,13 +122,11 @@ class Writer {
     return {{"file_path", path}, {"light", lights_[light].name}, {"transform_matrix", rows}};
   }
 
-  // The hits of some points of a pixel.
+  // The hits at the points of a pixel at which its photograph is rendered.
   template <class Add>
   void ForEachHit(const Eigen::Isometry3d& pose, int x, int y, const Add& add) const {
-    for (int i = 0; i < kPointsAcross * kPointsAcross; ++i) {
-      const Eigen::Vector2d at((i % kPointsAcross + 0.5) / kPointsAcross,
-                               (i / kPointsAcross + 0.5) / kPointsAcross);
-      const Ray ray = RayThroughPixel(camera_, pose, Eigen::Vector2d(x, y) + at);
+    for (int i = 0; i < kPoints; ++i) {
+      const Ray ray = RayThroughPixel(camera_, pose, Eigen::Vector2d(x, y) + PositionInPixel(i));
       if (const auto hit = FirstHit(truth_.scene.surfaces, ray)) add(*hit);
     }
   }
@@ -141,8 +139,8 @@ class Writer {
     terms.emission = false;  // the background is transparent
     terms.bounces = options_.bounces;
     RenderSettings settings;
-    settings.positions = kPointsAcross;
-    settings.paths_per_position = std::max(1, options_.paths / kPointsAcross);
+    settings.positions = kPoints;
+    settings.paths_per_position = std::max(1, options_.paths / kPoints);
     settings.seed = static_cast<std::uint64_t>(done_);
     const SceneRendering rendering = RenderScene(truth_.scene, terms, camera_, pose, settings);
     Image photo(camera_.width, camera_.height, 4, ColorEncoding::kLinear);
@@ -150,7 +148,7 @@ class Writer {
       for (int x = 0; x < camera_.width; ++x) {
         double covered = 0;
         ForEachHit(pose, x, y, [&](const SurfaceHit&) { ++covered; });
-        const double alpha = covered / (kPointsAcross * kPointsAcross);
+        const double alpha = covered / kPoints;
         if (alpha == 0) continue;
         for (int c = 0; c < 3; ++c) {
           photo.At(x, y)[c] = static_cast<float>(
@@ -180,8 +178,7 @@ class Writer {
         });
         if (count > 0) {
           for (int c = 0; c < 3; ++c) albedo.At(x, y)[c] = static_cast<float>(sum[c] / count);
-          albedo.At(x, y)[kAlphaChannel] =
-              static_cast<float>(count / (kPointsAcross * kPointsAcross));
+          albedo.At(x, y)[kAlphaChannel] = static_cast<float>(count / kPoints);
         }
         const auto centre =
             FirstHit(truth_.scene.surfaces, RayThroughPixel(camera_, pose, {x + 0.5, y + 0.5}));
@@ -215,8 +212,8 @@ void RelightableOptions::Check() const {
   CheckRange("--views", views, 2, 1000);
   CheckRange("--width", width, 1, 8192);
   CheckRange("--height", height, 1, 8192);
-  CheckRange("--paths", paths, 4, 1'000'000);
-  CheckRange("--lights", lights, 1, 3);
+  CheckRange("--samples", paths, 4, 1'000'000);
+  CheckRange("--relightable", lights, 1, 3);
   CheckRange("--bounces", bounces, 0, 100);
 }
 

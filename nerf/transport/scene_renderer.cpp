@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-const Vector2d kShift(0.5, 0.5);  // the first position is the centre of the pixel
-
 // Accumulates a picture pass by pass: colours, and the variance of luminance. The variance is taken
 // at each position in a pixel separately, because differences between positions are detail, not
 // noise.
@@ -111,7 +109,7 @@ SceneRendering RenderScene(const SurfaceScene& scene, const TransportTerms& term
       for (int x = 0; x < width; ++x) {
         const auto pixel = static_cast<std::size_t>(y) * width + x;
         for (int position = 0; position < settings.positions; ++position) {
-          const Vector2d at = Vector2d(x, static_cast<double>(y)) + PointInPixel(position, kShift);
+          const Vector2d at = Vector2d(x, static_cast<double>(y)) + PositionInPixel(position);
           UniformStream random(settings.seed, pixel,
                                static_cast<std::uint64_t>(passes) * settings.positions + position);
           sums.Add(

@@ -8,8 +8,12 @@
 #include "nerf/image/image.h"
 #include "nerf/scene/posed_images.h"
 #include "nerf/transport/path_tracer.h"
+#include "nerf/transport/pixel_rays.h"
 
 namespace nerf {
+
+// Where in a pixel the i-th position is; the first is its centre.
+inline Eigen::Vector2d PositionInPixel(int i) { return PointInPixel(i, {0.5, 0.5}); }
 
 struct RenderSettings {
   int positions = 4;            // within each pixel, the same in all pixels, 1..64

@@ -81,7 +81,7 @@ TEST_F(MaterialsCommand, WrongFlagsAreNamed) {
              "is no trained run");
 }
 
-// A field, and materials after it; interrupted and resumed, the same files.
+// A field, and materials after it.
 TEST_F(MaterialsCommand, TrainFindsThemAfterTheField) {
   const std::string flags =
       " --threads 2 --config fast --set train.steps=60 --effects config --representation field "

@@ -87,7 +87,7 @@ TEST_F(LightPlanFile, WhatIsWrongIsNamed) {
               HasSubstr("lights.a.suns[0].direction is missing"));
   EXPECT_THAT(
       ErrorOf(R"({"lights": {"a": {"suns": [{"direction": [0, 0, 1], "irradiance": -1}]}}})"),
-      HasSubstr("irradiance must not be negative"));
+      HasSubstr("irradiance must be 0 to"));
   EXPECT_THAT(ErrorOf(R"({"lights": {"a": {"points": [{"position": [0, 0, 1]}]}}})"),
               HasSubstr("give watts, candela or lumens"));
   EXPECT_THAT(

@@ -73,7 +73,7 @@ TEST(RelightableFolder, HasPhotographsLightsAndTruthThatFit) {
               testing::HasSubstr("is not a relightable capture"));
   options.lights = 4;
   EXPECT_THAT(test::InputErrorOf([&] { WriteRelightable(folder, options, [] { return true; }); }),
-              testing::HasSubstr("--lights is 4"));
+              testing::HasSubstr("--relightable is 4"));
 }
 
 }  // namespace
