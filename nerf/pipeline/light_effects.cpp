@@ -55,7 +55,7 @@ LightEffects DecideLightEffects(const MaterialOptions& options, const ExtractedS
     effects.specular_db = PsnrOfTrial(lit, options, box, resolution, false, seed) -
                           PsnrOfTrial(lit, options, box, resolution, true, seed);
   }
-  effects.specular = IsOn(options.specular, effects.specular_db.value_or(1) >= kLeastSpecular);
+  effects.specular = IsOn(options.specular, effects.specular_db.value_or(0) >= kLeastSpecular);
   return effects;
 }
 

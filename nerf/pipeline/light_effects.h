@@ -23,7 +23,7 @@ inline constexpr double kLeastSpecular = 0.1;
 // specular by two short fits. Adds the shadows to `lit`.
 //   box         of the material field
 //   resolution  of the material field
-//   with_trial  whether there is time for one; else a coat is simulated
+//   with_trial  whether there is time for one; else no coat is simulated
 LightEffects DecideLightEffects(const MaterialOptions& options, const ExtractedSurface& surface,
                                 const MeshRays& rays, const Eigen::AlignedBox3d& box,
                                 int resolution, std::uint64_t seed, bool with_trial,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "nerf/base/input_error.h"
+#include "nerf/base/progress.h"
 #include "nerf/base/stopwatch.h"
 #include "nerf/image/image_io.h"
 #include "nerf/model/materials_file.h"
@@ -62,6 +63,7 @@ class MaterialTraining {
     } else {
       return std::nullopt;
     }
+    if (!interrupted) WarnOfShortFit();
     MaterialFit fit(lit, found_.surface.field, found_.options, seed_);
     if (interrupted) fit.LoadFrom(interrupted->state, found_.steps);
     MaterialFitting fitting(fit, interrupted ? interrupted->planned_steps : plan_.options.steps,
@@ -101,6 +103,16 @@ class MaterialTraining {
   double SecondsOfFit() const {
     if (plan_.seconds == 0) return 0;
     return std::max(kLeastFitSeconds, plan_.seconds - kFileSeconds - watch_.Seconds());
+  }
+
+  void WarnOfShortFit() const {
+    constexpr double kLeastShare = 0.2;
+    if (plan_.seconds == 0 || SecondsOfFit() >= kLeastShare * plan_.seconds) return;
+    listener_(Warning{fmt::format(
+        "finding the surface took {} of {} for materials, so that they are hardly fitted; give "
+        "them "
+        "a longer time budget or a larger materials.share, or set materials.surface_resolution=80",
+        FormatSeconds(watch_.Seconds()), FormatSeconds(plan_.seconds))});
   }
 
   // The surface, the effects, and an empty material field; nullopt where it was stopped.
