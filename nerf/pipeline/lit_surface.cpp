@@ -5,17 +5,10 @@
 
 #include "nerf/base/input_error.h"
 #include "nerf/model/refined_poses.h"
+#include "nerf/relight/rows.h"
 
 namespace nerf {
 namespace {
-
-torch::Tensor RowsFrom(const std::vector<Eigen::Vector3f>& vectors) {
-  torch::Tensor rows = torch::empty({static_cast<std::int64_t>(vectors.size()), 3});
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    std::copy_n(vectors[i].data(), 3, rows.data_ptr<float>() + 3 * i);
-  }
-  return rows;
-}
 
 void AddLamps(const MeshRays& rays, float offset, LitSurface& lit) {
   std::vector<std::vector<Lamp>> of_groups;
@@ -72,8 +65,8 @@ LitSurface Observe(const Model& field, const Dataset& data, const ExtractedSurfa
   lit.lights = lights.groups;
   lit.transport.directions = LightDirections(directions);
   lit.has_bounces = false;
-  lit.vertex_position = RowsFrom(surface.mesh.vertices);
-  lit.vertex_normal = RowsFrom(surface.mesh.normals);
+  lit.vertex_position = RowsOf(surface.mesh.vertices);
+  lit.vertex_normal = RowsOf(surface.mesh.normals);
   AddLamps(rays, static_cast<float>(kShadowOffset * surface.distance.cell), lit);
   return lit;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "nerf/relight/rows.h"
 #include "nerf/scene/camera.h"
 
 namespace nerf {
@@ -12,17 +13,9 @@ namespace {
 
 constexpr float kLeastOpacity = 0.02f;
 constexpr double kOffset = 1.5;  // cells, at which shadow rays begin
-constexpr float kReach = 3;       // cells, from what the field shows to the mesh
+constexpr float kReach = 3;      // cells, from what the field shows to the mesh
 constexpr int kAround = 8;       // rays about a pixel that misses the mesh
 constexpr std::int64_t kChunk = 1024;
-
-torch::Tensor RowsOf(const std::vector<Eigen::Vector3f>& vectors) {
-  torch::Tensor rows = torch::empty({static_cast<std::int64_t>(vectors.size()), 3});
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    std::copy_n(vectors[i].data(), 3, rows.data_ptr<float>() + 3 * i);
-  }
-  return rows;
-}
 
 // Calls body(begin, end) for parts of so many points as fit in the cache with their directions.
 template <class Body>
